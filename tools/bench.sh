@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes anew what the documents say of grids, on this machine:
+# Renews the figures that the documents give on grids, measured on this machine:
 #   tools/docs/accuracy.md (its table), accuracy.svg, and the rows of 1 mm in README.md, by `palpate accuracy`
 #   data/bench/CPU.json, named after the processor: sampling beside OpenVDB's and NanoVDB's samplers, in one run
 #   data/bench/CPU-baking.json: baking beside OpenVDB's tools, in one run
@@ -16,7 +16,7 @@ case ${1:-} in
 esac
 [ $# -le 1 ] || { echo "error: one mesh at most" >&2; exit 2; }
 
-# What is being done, since when; each part prints as it goes on from there.
+# Prints which part is running, and since when; each part prints its own progress.
 parts=4
 part=0
 tell() { # WHAT

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Writes tools/docs/gallery.md and its pictures: each example scene as it is felt, with the commands that draw it.
+# Writes tools/docs/gallery.md and its pictures: each example scene as it feels, with the commands
+# that draw it.
 #   tools/gallery.sh [PALPATE]   PALPATE: the command, build/release/bin/palpate if not given
 # The head scenes need Debian's mricron-data. Takes some minutes on two cores.
 set -euo pipefail
@@ -13,20 +14,20 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$pictures"
 rm -f "$pictures"/*.png "$pictures"/*.webp
 
-# Runs a command, and shows it on the page under the name that a reader would give its files.
+# Runs a command, and shows it on the page with the file names that a reader would use.
 run() { # WORD...
   local shown="$*"
   "$palpate" "${@//@/$work/}" --force --quiet > "$work/said" 2>&1 || { cat "$work/said" >&2; return 1; }
   printf 'palpate %s\n' "${shown//@/}" >> "$page"
 }
 
-# A scene, drawn after it was touched (MOTION: options of touch; empty: not touched).
+# Draws a scene after it was touched (MOTION: options of touch; empty: not touched).
 scene() { # NAME TITLE NOTICE MOTION LOOK [PICTURE]
   local name=$1 title=$2 notice=$3 motion=$4 look=$5 picture=${6:-$1.png}
   local file=data/scenes/$name.yaml
   printf '## %s\n\n![%s](gallery/%s)\n\n%s\n\n```sh\n' "$title" "$title" "$picture" "$notice" >> "$page"
   local trace=()
-  # Words of options are told apart by blanks; none of them holds one.
+  # Options are split at blanks; none of them contains a blank.
   # shellcheck disable=SC2086
   if [ -n "$motion" ]; then
     run touch $file $motion --trace @trace.csv

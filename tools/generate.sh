@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Writes anew what is made from the declarations of scene files and of the command line; tests hold it equal:
+# Renews the files that are generated from the declarations of scene files and of the command line;
+# tests compare them:
 #   data/schema/scene-1.json, and between the marks of tools/docs/scene.md and lib/README.md the tables of keys
 #   tools/README.md (its reference), tools/docs/palpate.1, tools/completion
 #   tools/generate.sh [PALPATE]   PALPATE: the command, build/release/bin/palpate if not given
@@ -7,7 +8,8 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 palpate=${1:-build/release/bin/palpate}
 
-# Standard input, with what COMMAND ARGUMENT prints between "<!-- MARK ARGUMENT -->" and "<!-- end -->".
+# Replaces the text between "<!-- MARK ARGUMENT -->" and "<!-- end -->" in standard input by the
+# output of COMMAND ARGUMENT.
 between_marks() { # MARK COMMAND...
   local mark=$1 line is_kept=yes
   shift

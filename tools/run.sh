@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds the command palpate, and does the main job on real input: a probe presses on the
 # skin of a scanned head (data/scenes/head.yaml), then goes through a burr hole into its thalamus and back.
-# Prints what was felt; trace.csv and head.png go to build/first-light, which each run writes anew.
+# Prints what was felt; trace.csv and head.png go to build/first-light, and each run writes them anew.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -16,7 +16,8 @@ say "Building the page of palpate view (build/page)"
 build_page
 
 say "Building palpate (build/release)"
-# Without tests, which need more packages; if tools/test.sh has configured this folder, it stays as it is.
+# Without tests, which need more packages. If tools/test.sh has configured this folder, it stays as
+# it is.
 [ -f build/release/build.ninja ] || configure release -DPALPATE_TESTS=OFF -DPALPATE_BENCH=OFF
 cmake --build build/release --target palpate_command
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# What tools/run.sh and tools/test.sh share: the one list of Debian packages, and how to install them,
-# configure and build. Sourced by them; has nothing to run by itself.
+# Shared by tools/run.sh and tools/test.sh: the one list of Debian packages, and functions to
+# install them, configure and build. Only to be sourced; it does nothing by itself.
 
-# To build and run Palpate. libboost-dev: OpenVDB's headers need it, but libopenvdb-dev does not bring it.
-# fonts-dejavu-core: the letters in pictures. mricron-data: the scanned head that data/scenes/head.yaml is about.
+# To build and run Palpate. libboost-dev: OpenVDB's headers need it, but libopenvdb-dev does not
+# depend on it. fonts-dejavu-core: the letters in pictures. mricron-data: the scanned head of
+# data/scenes/head.yaml.
 build_packages=(
   g++ cmake ninja-build ccache
   libopenvdb-dev libtbb-dev libboost-dev libnifti-dev libgdcm-dev zlib1g-dev libassimp-dev
@@ -12,7 +13,10 @@ build_packages=(
   mricron-data
 )
 
-# To test and measure it as well (NanoVDB: a rival in tests/bench). git tells what changed; umockdev stands for input devices; Python, CGAL, ITK and OpenVDB's own tools are what results are held against; invesalius-examples: a scanned head (CT); fish, zsh: what completion is written for beside bash.
+# To test and measure it as well. NanoVDB: a rival in tests/bench. git: tells what changed.
+# umockdev: stands in for input devices. Python, CGAL, ITK and OpenVDB's own tools: results are
+# compared with theirs. invesalius-examples: a scanned head (CT). fish, zsh: completion is tested in
+# them besides bash.
 test_packages=(
   clang-format clang-tidy codespell doxygen git
   libgtest-dev umockdev libumockdev-dev libbenchmark-dev libnanovdb-dev libcgal-dev
@@ -24,7 +28,7 @@ test_packages=(
 # To fuzz the readers (tools/test.sh --all): the sanitizers and libFuzzer come with clang's runtime.
 fuzz_packages=(clang-14 libclang-rt-14-dev)
 
-# To look at the page of `palpate view` (tools/test.sh --lane page).
+# To test the page of `palpate view` (tools/test.sh --lane page).
 page_packages=(chromium)
 
 export LC_ALL=C.UTF-8
@@ -37,7 +41,7 @@ elapsed() { printf '%d s' "$SECONDS"; }
 
 missing_packages() { # NAME...: those that are not installed, one a line
   local installed
-  # dpkg-query fails when it does not know a name, which only means that it is missing.
+  # dpkg-query fails for a name that it does not know, which only means that the package is missing.
   installed=$({ dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' "$@" 2> /dev/null || true; } |
     sed -n 's/^installed //p')
   printf '%s\n' "$@" | grep --line-regexp --fixed-strings --invert-match "$installed" || true
@@ -76,7 +80,7 @@ install_packages() { # NAME...: installs what is missing, as root or through sud
   fi
 }
 
-build_page() { # the page of `palpate view`, where npm is; without it, the command says what is missing
+build_page() { # builds the page of `palpate view` if npm is installed; without it, the command says what is missing
   if ! command -v npm > /dev/null; then
     echo "There is no npm here, so the command gets no page for \`palpate view\`."
     return 0
@@ -84,13 +88,13 @@ build_page() { # the page of `palpate view`, where npm is; without it, the comma
   "$root/tools/page/build.sh" || echo "The page of \`palpate view\` could not be built; see above. All else works without it."
 }
 
-use_ccache() { # what was compiled once, here or in another clone of this project, is not compiled again
+use_ccache() { # sources compiled once, here or in another clone of this project, are not compiled again
   if command -v ccache > /dev/null; then
     export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1
   fi
 }
 
-configure() { # PRESET [-D...]: only when there is something new to configure
+configure() { # PRESET [-D...]: runs only when there is something new to configure
   local dir=$root/build/$1 wanted="$*"
   if [ -f "$dir/build.ninja" ] && [ "$dir/build.ninja" -nt "$root/CMakePresets.json" ] &&
     [ "$(cat "$dir/.configured" 2> /dev/null)" = "$wanted" ]; then

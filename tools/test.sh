@@ -57,7 +57,7 @@ if [ ${#lanes[@]} = 0 ]; then
   lanes=("${default_lanes[@]}") is_default=1
 fi
 
-# Tests run elsewhere; and a folder that is asked for has to be there.
+# Tests run in another folder, so make the path absolute; and a folder that is named has to exist.
 if [ -n "${PALPATE_SCANS:-}" ]; then
   [ -d "$PALPATE_SCANS" ] || usage "PALPATE_SCANS names $PALPATE_SCANS, which is not a folder"
   PALPATE_SCANS=$(cd "$PALPATE_SCANS" && pwd) && export PALPATE_SCANS
@@ -73,7 +73,7 @@ passed=0 failed=0 skipped=0 failed_lanes=() report=() left_out=()
 # Every C++ file of ours.
 sources() { find lib vdb devices tools tests -name '*.h' -o -name '*.cpp' | sort; }
 
-count_check() { # STATUS: a lane that is one check
+count_check() { # STATUS: counts a lane that is one check
   if [ "$1" = 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); fi
   return "$1"
 }
@@ -92,24 +92,24 @@ count_tests() { # JUNIT_FILE: adds up what ctest ran; false if it ran nothing or
   [ "$fails" = 0 ]
 }
 
-skipped_tests() { # JUNIT_FILE: a line for each test that was skipped: its name, and after a tab why
+skipped_tests() { # JUNIT_FILE: prints a line for each skipped test: its name, a tab, and the reason
   awk '
     /<testcase / { name = $0; sub(/.* name="/, "", name); sub(/".*/, "", name); skipped = 0; why = "" }
     /<skipped/ { skipped = 1 }
-    # GoogleTest: where, and on the next line why
+    # GoogleTest prints the place, and on the next line the reason.
     said { why = why == "" ? $0 : why; said = 0 }
     / *: Skipped$/ { said = 1 }
     /<\/testcase>/ && skipped { print name "\t" why }' "$1" |
     sed 's/&lt;/</g;s/&gt;/>/g;s/&quot;/"/g;s/&apos;/\x27/g;s/&amp;/\&/g'
 }
 
-tell_left_out() { # what the lanes skipped, each test once, by the file that it wants
+tell_left_out() { # prints the tests that lanes skipped, each test once, grouped by the file that it needs
   local tests scans
   [ ${#left_out[@]} -gt 0 ] || return 0
   tests=$(printf '%s\n' "${left_out[@]}" | sort --unique --field-separator=$'\t' --key=1,1)
   scans=$(grep --count $'\tabsent: ' <<< "$tests")
   echo "Left out: $(wc -l <<< "$tests") tests"
-  # 'absent: FILE in FOLDER; ...'; a test may also give another reason, or none
+  # 'absent: FILE in FOLDER; ...'; a test may also give another reason, or none.
   awk -F '\t' '{
       why = $2 == "" ? " without a reason" : ": " $2
       if (sub(/^: absent: /, "", why)) { sub(/ in [^;]*; .*/, "", why); why = " for want of " why }
@@ -123,7 +123,7 @@ FOLDER holds the files above (now ${PALPATE_SCANS:-$(dirname "$root")/shared/dat
 EOF
 }
 
-progress() { # WHAT: passes lines on; of those that count ('[3/40] Building', '3/40 Test ... Passed') one in ten seconds, with the time left
+progress() { # WHAT: passes lines on; of those that count ('[3/40] Building', '3/40 Test ... Passed') only one in ten seconds, with the time left
   local line at of began=$SECONDS shown=$SECONDS left
   while IFS= read -r line; do
     if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] || $line =~ ^\ *([0-9]+)/([0-9]+)\ Test.*(Passed|Skipped) ]]; then
@@ -155,7 +155,7 @@ lane_format() {
   local status=0
   sources | xargs --no-run-if-empty clang-format --dry-run --Werror || status=1
   python3 -B tests/words/check_words.py || status=1
-  # What a merge left behind.
+  # Conflict marks that a merge left behind.
   if git -C "$root" grep -nE '^(<<<<<<<|>>>>>>>)( |$)'; then status=1; fi
   count_check $status
 }
@@ -165,7 +165,7 @@ lane_release() { build_and_test release; }
 lane_asan() { build_and_test asan "${asan_options[@]}"; }
 lane_tsan() { build_and_test tsan; }
 
-lane_damage() { # over the command of the release lane
+lane_damage() { # uses the command of the release lane
   configure release -DPALPATE_TESTS=ON &&
     cmake --build --preset release --target palpate_damage_sweep || {
     lane_note="does not build"; count_check 1; return; }
@@ -176,7 +176,7 @@ lane_damage() { # over the command of the release lane
   count_check "$status"
 }
 
-lane_fuzz() { # each reader goes on from the corpus that the last run left
+lane_fuzz() { # each reader starts from the corpus that the last run left
   local corpus=$root/build/fuzz/corpus fuzzer reader all=0
   install_packages "${fuzz_packages[@]}"
   configure fuzz && cmake --build --preset fuzz -- -k 0 || {
@@ -193,15 +193,15 @@ lane_fuzz() { # each reader goes on from the corpus that the last run left
   return $all
 }
 
-lane_mutants() { # what survives is listed
+lane_mutants() { # lists the mutants that no test noticed
   python3 -B tests/mutants/mutants.py | tee "$results/mutants.txt"
   local status=${PIPESTATUS[0]}
   lane_note=$(tail -n 1 "$results/mutants.txt")
   count_check "$status"
 }
 
-lane_page() { # pictures go to build/test-results/page
-  # Debian's npm and others' Node exclude each other: whoever has one keeps it.
+lane_page() { # writes pictures to build/test-results/page
+  # Debian's npm conflicts with Node from elsewhere: a machine that has one keeps it.
   command -v npm > /dev/null || install_packages npm
   install_packages "${page_packages[@]}"
   tools/page/build.sh && configure release -DPALPATE_TESTS=ON &&
@@ -213,7 +213,8 @@ lane_page() { # pictures go to build/test-results/page
   count_check "$status"
 }
 
-# The sources clang-tidy has to look at: all that changed, and for each header that changed one that includes it.
+# The sources that clang-tidy has to check: all that changed, and for each changed header one source
+# that includes it.
 tidy_sources() {
   local base=$changed_since file
   if [ -z "$base" ]; then
@@ -227,7 +228,7 @@ tidy_sources() {
     grep -E '^(lib|vdb|devices|tools|tests)/.*\.(h|cpp)$' | while read -r file; do
       case $file in
         *.cpp) echo "$file" ;;
-        *) # the source of the same name is the best witness of a header
+        *) # prefer the source of the same name
           grep --recursive --files-with-matches --include='*.cpp' --fixed-strings \
             "$(sed -E 's,^.*/(include|private)/,,' <<< "$file")\"" lib vdb devices tools tests |
             awk -v stem="/$(basename "$file" .h).cpp" '{ if (index($0, stem)) { print; found = 1; exit } last = $0 }
@@ -258,7 +259,7 @@ for lane in "${lanes[@]}"; do
     word=ok
   else
     word=FAILED failed_lanes+=("$lane")
-    # Whatever went wrong, a lane that failed is never counted as nothing.
+    # A lane that failed for whatever reason counts as at least one failure.
     [ "$failed" -gt "$failed_before" ] || failed=$((failed + 1))
   fi
   report+=("$(printf '%-8s %-7s %5d s  %s' "$lane" $word $((SECONDS - began)) "$lane_note")")

@@ -1,19 +1,20 @@
 # cmake -D ROOT=... -P check_arrows.cmake
-# Fails on an include against the arrows of the design:
+# Fails on an include that the design's arrows do not allow:
 #   tools -> devices, vdb, lib;  devices -> lib;  vdb -> lib;  lib -> nobody
 #   inside lib: render -> scene -> {contact, interior} -> materials -> fields -> core
-# Of each other, vdb and devices include public headers (<module>/include) and the private ones of lib's core, whose symbols
-# are exported; tools also all that are private but not part of one source folder (<module>/private). Target visibility does not see to it: /usr/include is always on the
-# path, and so are a static library's own headers. Tests may include everything.
+# vdb and devices may include public headers of each other (<module>/include), and the private ones
+# of lib's core, whose symbols are exported; tools also all private headers that do not belong to
+# one source folder (<module>/private). Target visibility does not check this: /usr/include is
+# always on the path, and so are a static library's own headers. Tests may include everything.
 cmake_minimum_required(VERSION 3.25)
 
-# What each module may include of ours, itself apart.
+# The modules that each module may include, besides itself.
 set(modules_lib "")
 set(modules_vdb lib)
 set(modules_devices lib)
 set(modules_tools lib vdb devices)
 
-# What each layer of lib may include of lib, itself apart.
+# The layers of lib that each layer of lib may include, besides itself.
 set(layers_core "")
 set(layers_fields core)
 set(layers_materials fields ${layers_fields})
@@ -22,10 +23,12 @@ set(layers_interior materials ${layers_materials})
 set(layers_scene contact interior ${layers_contact})
 set(layers_render scene ${layers_scene})
 
-# What every file may include: beside the layers, or made when the build is configured.
+# Headers that every file may include: they are outside the layers, or made when the build is
+# configured.
 set(common palpate/export.h palpate/version.h own_vocabulary.h)
 
-# Libraries that live in one place only: regular expression of the include, then where it may stand.
+# Libraries that only one place may include: regular expression of the include, then the allowed
+# place.
 set(confined_names openvdb tbb imath assimp nifti gdcm boost yaml eigen libusb evdev)
 set(confined_openvdb "^openvdb/" "^vdb/")
 set(confined_tbb "^(tbb|oneapi)/" "^vdb/")
@@ -45,7 +48,7 @@ macro(complain file what)
   math(EXPR wrong "${wrong} + 1")
 endmacro()
 
-# Which module and, within lib, which layer a file of ours belongs to.
+# The module and, within lib, the layer that a file of ours belongs to.
 function(place file module_out layer_out)
   string(REGEX MATCH "^[^/]+" module "${file}")
   set(layer "")
@@ -56,14 +59,15 @@ function(place file module_out layer_out)
   set(${layer_out} "${layer}" PARENT_SCOPE)
 endfunction()
 
-# The file of ours that `included` in `file` means, relative to ROOT; empty if it is none of ours.
+# The file of ours that `included` means in `file`, relative to ROOT; empty if it is not one of
+# ours.
 function(resolve file included out)
   cmake_path(GET file PARENT_PATH folder)
   string(REGEX MATCH "^[^/]+" module "${file}")
   foreach(base "${folder}" "${module}/src" lib/include vdb/include devices/include lib/private vdb/private devices/private)
     set(candidate "${base}/${included}")
     cmake_path(NORMAL_PATH candidate)
-    # Or made by CMake out of a file beside it.
+    # Or a file that CMake makes from a template beside it.
     if(EXISTS "${ROOT}/${candidate}" OR EXISTS "${ROOT}/${candidate}.in")
       set(${out} "${candidate}" PARENT_SCOPE)
       return()
@@ -88,7 +92,7 @@ foreach(file IN LISTS files)
   endif()
 
   file(READ "${ROOT}/${file}" text)
-  # Only the include itself is kept: brackets and semicolons further on would break a CMake list.
+  # Only the include itself is kept: brackets and semicolons behind it would break a CMake list.
   string(REGEX MATCHALL "\n[ \t]*#[ \t]*include[ \t]*[<\"][^>\"\n]+" lines "\n${text}")
   foreach(line IN LISTS lines)
     string(REGEX REPLACE ".*[<\"]" "" included "${line}")
@@ -123,7 +127,7 @@ foreach(file IN LISTS files)
     elseif(included MATCHES "^palpate/")
       complain("${file}" "includes ${included}: there is no such header")
     elseif(module STREQUAL "lib" AND NOT included MATCHES "^(glm|yaml-cpp)/" AND included MATCHES "[./]")
-      # What is left is the standard library, whose headers have neither a folder nor a suffix.
+      # The rest is the standard library, whose headers have neither a folder nor a suffix.
       complain("${file}" "includes ${included}: lib knows the C++ standard library and GLM only")
     endif()
   endforeach()

@@ -1,5 +1,6 @@
 # cmake -D ROOT=... -D SCRATCH=... -P check_arrows_test.cmake
-# Plants wrong includes, one at a time, in a small tree and sees that check_arrows.cmake names each of them.
+# Puts wrong includes, one at a time, into a small tree, and checks that check_arrows.cmake names
+# each of them.
 cmake_minimum_required(VERSION 3.25)
 
 function(check tree status_out text_out)
@@ -36,7 +37,8 @@ if(NOT status EQUAL 0)
   message(FATAL_ERROR "a tree that keeps to the arrows is refused:\n${text}")
 endif()
 
-# refused(file include [complaint]): the file with that one more include must be complained of.
+# refused(file include [complaint]): with this additional include in the file, the check must
+# complain.
 function(refused file include)
   plant_good_tree()
   file(APPEND "${SCRATCH}/${file}" "#  include ${include}\n")

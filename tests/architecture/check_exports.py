@@ -19,7 +19,7 @@ def declared(text):
     text = re.sub(r"^#.*(?:\\\n.*)*$", "", without_comments(text), flags=re.M)
     spaces, classes, functions = [], set(), set()
     statement = ""
-    depth = 0  # of braces of anything but a namespace
+    depth = 0  # depth of braces that do not open a namespace
     for char in text:
         if depth == 0 and char == "{":
             space = re.search(r"\bnamespace\s+([\w:]+)\s*$", statement)
@@ -48,7 +48,7 @@ def declared(text):
             statement = ""
             continue
         if depth == 0:
-            # What follows a body begins anew.
+            # After a body a new statement begins.
             statement = "" if char == "{" else statement + char
     return classes, functions
 
@@ -72,12 +72,12 @@ def symbols_of(library):
     read = subprocess.run(["readelf", "--symbols", "--wide", library], check=True,
                           stdout=subprocess.PIPE, text=True)
     rows = [line.split() for line in read.stdout.splitlines()]
-    # Defined in it, and not inline: those are WEAK.
+    # Defined in the library and not inline: inline ones are WEAK.
     rows = [row for row in rows
             if len(row) == 8 and row[3] == "FUNC" and row[4] != "WEAK" and row[6] != "UND"]
     names = subprocess.run(["c++filt"], input="\n".join(row[7] for row in rows), check=True,
                            stdout=subprocess.PIPE, text=True).stdout.splitlines()
-    # A function that only its own file knows is no one's to link.
+    # Functions that only their own file knows need not be linkable.
     return [(row[5], name) for row, name in zip(rows, names)
             if row[4] == "GLOBAL" or row[5] == "HIDDEN"]
 

@@ -1,5 +1,5 @@
 # cmake -D ROOT=... -D SCRATCH=... -D CLANG_TIDY=... -P names_test.cmake
-# The naming rules of .clang-tidy are only worth something if a wrong name is caught: plants one of each kind.
+# Checks that the naming rules of .clang-tidy catch wrong names: plants one of each kind.
 cmake_minimum_required(VERSION 3.25)
 
 set(right [=[

@@ -1,5 +1,5 @@
-// How fast fields, meshes and labels become bands, and bands bricks, beside OpenVDB's own tools in
-// the same run. See README.md.
+// Speed of baking fields, meshes and labels to bands, and bands to bricks, compared with OpenVDB's
+// own tools in the same run. See README.md.
 
 #include "bench/bake_bench.h"
 
@@ -18,7 +18,7 @@
 namespace palpate::vdb::bench {
 namespace {
 
-/// [bytes] A line of /proc/self/status; 0 if there is none.
+/// [bytes] The value of a line of /proc/self/status; 0 if there is no such line.
 double statusOf(const std::string& key) {
   std::ifstream in("/proc/self/status");
   for (std::string line; std::getline(in, line);) {
@@ -27,7 +27,7 @@ double statusOf(const std::string& key) {
   return 0.0;
 }
 
-/// Prints as the console does, and keeps the shortest run of each benchmark.
+/// Prints as the console reporter does, and keeps the shortest run of each benchmark.
 class Results final : public benchmark::ConsoleReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {
@@ -47,7 +47,7 @@ class Results final : public benchmark::ConsoleReporter {
       nlohmann::ordered_json& row = *found;
       row["seconds"] = seconds;
       for (const auto& [key, counter] : run.counters) {
-        // Google Benchmark has seconds for each voxel there.
+        // In the time column for one voxel or brick, Google Benchmark reports seconds.
         if (key == "per_voxel" || key == "per_brick") {
           row[key + "_ns"] = 1e9 * counter.value;
         } else {
@@ -57,8 +57,8 @@ class Results final : public benchmark::ConsoleReporter {
     }
   }
 
-  /// Adds to each row of two threads how much faster it was than that of one, and prints that
-  /// beside the control's.
+  /// Adds to each row with two threads its speed-up over one thread, and prints that beside the
+  /// speed-up of the control.
   void compareThreads() {
     std::string table;
     for (nlohmann::ordered_json& row : rows_) {
@@ -108,9 +108,10 @@ int runAll(int count, char** arguments) {
 }  // namespace
 
 void addPeak(benchmark::State& state, const std::function<Made()>& make) {
-  malloc_trim(0);  // What runs before this one left in the heap would be used, and not seen.
+  malloc_trim(0);  // otherwise memory that earlier benchmarks left in the heap would be reused, and
+                   // not be counted
   const double before = statusOf("VmRSS");
-  std::ofstream("/proc/self/clear_refs") << "5";  // the peak begins anew
+  std::ofstream("/proc/self/clear_refs") << "5";  // resets the peak
   const Made made = make();
   const double memory = static_cast<double>(made.second);
   state.counters["memory_mb"] = 1e-6 * memory;

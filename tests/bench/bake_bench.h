@@ -1,5 +1,5 @@
 #pragma once
-/// What the benchmarks of baking share.
+/// Shared by the benchmarks of baking.
 
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
@@ -11,13 +11,13 @@
 
 namespace palpate::vdb::bench {
 
-/// [voxels] as in the measurements that others are known by.
+/// [voxels] the half width that published measurements of others use
 inline constexpr double kHalfWidth = 3.0;
 
-/// The run that touches no memory: what two threads can give here.
+/// The run that touches no memory: it shows the speed-up that two threads can reach here.
 inline constexpr const char* kControl = "control";
 
-/// Limits the threads while it lives.
+/// Limits the number of threads while it exists.
 class Threads {
  public:
   explicit Threads(std::int64_t count)
@@ -27,7 +27,7 @@ class Threads {
   tbb::global_control control_;
 };
 
-/// Adds the count of active voxels and the seconds that each took.
+/// Adds the count of active voxels and the seconds for each of them.
 inline void perVoxel(benchmark::State& state, std::uint64_t voxels) {
   state.counters["voxels"] = static_cast<double>(voxels);
   state.counters["per_voxel"] = benchmark::Counter(
@@ -35,7 +35,7 @@ inline void perVoxel(benchmark::State& state, std::uint64_t voxels) {
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-/// Times `make`, but not what it takes to free what the run before made.
+/// Times `make`, but not the release of the previous result.
 template <class Make>
 auto timed(benchmark::State& state, const Make& make) {
   decltype(make()) made{};
@@ -48,11 +48,12 @@ auto timed(benchmark::State& state, const Make& make) {
   return made;
 }
 
-/// What a run made: the thing itself, so that it stays there, and the memory [bytes] that it takes.
+/// The result of a run: the object itself, so that it stays allocated, and the memory [bytes] that
+/// it takes.
 using Made = std::pair<std::shared_ptr<const void>, std::uint64_t>;
 
-/// Runs `make` once more, untimed. Adds "memory_mb" of what it made, and "peak": the most memory
-/// that was in use on the way, as a share of that.
+/// Runs `make` once more, untimed. Adds "memory_mb", the memory of its result, and "peak", the
+/// largest memory in use meanwhile, relative to that.
 void addPeak(benchmark::State& state, const std::function<Made()>& make);
 
 }  // namespace palpate::vdb::bench

@@ -1,6 +1,6 @@
-// What two threads give on this machine at best: work that touches no memory, cut up as a bake is.
-// Cores that are shared with others, or clocked down when both are busy, give less than 2, and so
-// they do to a bake.
+// The best speed-up that two threads reach on this machine: work that touches no memory, divided as
+// a bake is. If other programs use the cores, or the clock drops when both are busy, the speed-up
+// is less than 2, and so it is for a bake.
 
 #include <benchmark/benchmark.h>
 #include <tbb/blocked_range.h>

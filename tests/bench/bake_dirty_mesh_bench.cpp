@@ -1,6 +1,6 @@
-// Meshes as people have them, beside OpenVDB's meshToVolume in the same run: clean, two hundred
-// balls that overlap, with specks, as a soup. `worst` is the largest error of some voxels of the
-// band by brute force [voxels].
+// Meshes as found in practice, compared with OpenVDB's meshToVolume in the same run: clean, two
+// hundred overlapping balls, with specks, and as a triangle soup. `worst` is the largest error of
+// some voxels of the band, found by brute force [voxels].
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/MeshToVolume.h>
@@ -33,7 +33,7 @@ void append(Mesh& mesh, const Mesh& more) {
 
 struct Case {
   Mesh mesh;
-  std::vector<Mesh> parts;  ///< convex, whose union it is
+  std::vector<Mesh> parts;  ///< convex parts; the mesh is their union
 };
 
 const Case& caseOf(int kind) {
@@ -57,7 +57,7 @@ const Case& caseOf(int kind) {
   if (kind == kSpecks) {
     for (int n = 0; n < 200; ++n) {
       Mesh speck = test::ballMesh(anywhere(55e-3), 0.2e-3, 1);
-      speck.triangles.resize(40);  // half of it
+      speck.triangles.resize(40);  // half of its triangles
       append(made.mesh, speck);
     }
   }

@@ -1,5 +1,5 @@
-// An analytic ball, a CSG of fourteen parts and four implicit shapes into bands, beside OpenVDB's
-// createLevelSetSphere; and a band into bricks.
+// Baking an analytic ball, a CSG of fourteen parts and four implicit shapes to bands, compared with
+// OpenVDB's createLevelSetSphere; and a band to bricks.
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/LevelSetSphere.h>
@@ -22,7 +22,7 @@ namespace {
 constexpr double kRadius = 50e-3;
 const Vec3 kCenter(0.31e-3, -0.17e-3, 0.23e-3);
 
-/// A box, eight balls cut out of its corners, three rings and two balls added.
+/// A box with eight balls cut out of its corners, and three rings and two balls added.
 FieldPtr fourteenParts() {
   std::vector<FieldPtr> cut;
   for (int n = 0; n < 8; ++n) {
@@ -57,8 +57,8 @@ void bakeOf(benchmark::State& state, const FieldPtr& field) {
 void ball(benchmark::State& state) { bakeOf(state, sphere(kCenter, kRadius)); }
 void csg(benchmark::State& state) { bakeOf(state, fourteenParts()); }
 
-/// Fields whose values are not distances, so that the bake searches closest points. Also counts
-/// looks at the field for each voxel.
+/// Fields whose values are not distances, so that the bake searches for closest points. Also counts
+/// queries of the field for each voxel.
 void bakeImplicit(benchmark::State& state, const FieldPtr& field,
                   const std::optional<Box3>& box = {}) {
   const bench::Threads threads(state.range(1));
@@ -106,7 +106,7 @@ void createLevelSetSphere(benchmark::State& state) {
   });
 }
 
-/// A band, wide enough for the cubic sampler, into bricks.
+/// Bricks made from a band that is wide enough for the cubic sampler.
 void bricks(benchmark::State& state) {
   const bench::Threads threads(state.range(1));
   const LevelSet set = bake(*sphere(kCenter, kRadius), optionsOf(state, kCubicHalfWidth));

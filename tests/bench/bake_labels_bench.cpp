@@ -1,4 +1,4 @@
-// A ball of labels into a band, beside OpenVDB's topologyToLevelSet.
+// Baking a ball of labels to a band, compared with OpenVDB's topologyToLevelSet.
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/TopologyToLevelSet.h>

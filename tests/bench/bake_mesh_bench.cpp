@@ -1,6 +1,6 @@
-// Balls of 20 k, 320 k and 1.3 M triangles into bands, at three voxel sizes, beside OpenVDB's
-// meshToVolume. Each row says how long the triangles' edges are: what a mesh costs depends on that,
-// and 2 voxels are the usual.
+// Baking balls of 20 k, 320 k and 1.3 M triangles to bands, at three voxel sizes, compared with
+// OpenVDB's meshToVolume. Each row gives the length of the triangles' edges, because the cost of a
+// mesh depends on it; 2 voxels are usual.
 
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/MeshToVolume.h>
@@ -84,7 +84,7 @@ void sizes(benchmark::internal::Benchmark* bench) {
   bench->Args({7, 200, 2});
 }
 
-/// It takes up to half a minute each: where edges are nearest to 2 voxels, once.
+/// This takes up to half a minute for each size: run it once, where edges are nearest to 2 voxels.
 void fewSizes(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"levels", "R/h", "threads"})->Unit(benchmark::kMillisecond)->UseRealTime();
   bench->Iterations(1)->Repetitions(1);

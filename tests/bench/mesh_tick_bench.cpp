@@ -1,7 +1,7 @@
-// What a tick costs, and how far a surface point and its normal are off, on meshes with sharp
-// edges: as plain bricks, with exact triangles by the edges, as half-spaces; strokes over faces and
-// edges, 1 mm deep. One row each. palpate_mesh_tick [MESH]: a mesh of a file too, made 50 mm long;
-// a tooth, for one.
+// Time of a tick, and errors of surface points and normals, on meshes with sharp edges: as plain
+// bricks, with exact triangles near edges, and as half-spaces; in strokes over faces and edges, 1
+// mm deep. One row for each. palpate_mesh_tick [MESH]: also for a mesh from a file (a tooth, say),
+// scaled to a length of 50 mm.
 
 #include <algorithm>
 #include <chrono>
@@ -65,14 +65,15 @@ std::vector<Vec3> round(int count, double even, double odd) {
 }
 
 struct Row {
-  double median = 0.0, late = 0.0;   // [ns] of a tick; late: 99.9 %
-  double place = 0.0, normal = 0.0;  // [m], [degree] at most, by edges
+  double median = 0.0, late = 0.0;   // [ns] of a tick; late: the 99.9 % quantile
+  double place = 0.0, normal = 0.0;  // [m], [degree] largest error near edges
 };
 
-/// Between random points of the surface's box, a millimeter within it.
+/// Strokes between random points of the surface's box, a millimeter inside it.
 Row measured(const FieldPtr& field, const FieldPtr& bricks, const Mesh& mesh) {
   Row row;
-  // Beside the middles of sides, a fifth of a voxel off, the mesh's own face is the truth.
+  // Near the middles of sides, a fifth of a voxel off the surface, the mesh's own face gives the
+  // truth.
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [i, j, k] = mesh.triangles[t];
     const Vec3 corners[] = {mesh.vertices[i], mesh.vertices[j], mesh.vertices[k]};
@@ -81,7 +82,7 @@ Row measured(const FieldPtr& field, const FieldPtr& bricks, const Mesh& mesh) {
     const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     for (int n = 0; n < 3; ++n) {
       const Vec3 on_side = 0.5 * (corners[n] + corners[(n + 1) % 3]);
-      // Where parts overlap, a wall within the solid does not belong to its surface.
+      // Where parts overlap, a wall inside the solid does not belong to its surface.
       if (!bricks->sample(on_side).in_band || std::abs(bricks->value(on_side)) > 2.0 * kVoxel)
         continue;
       const Vec3 at = on_side + 0.2 * kVoxel * glm::normalize(middle - on_side);
@@ -101,8 +102,8 @@ Row measured(const FieldPtr& field, const FieldPtr& bricks, const Mesh& mesh) {
   const auto goal = [&] {
     return box.lo + Vec3(any(random), any(random), any(random)) * box.size();
   };
-  // The way that the hand would take over the surface: each point is brought to a depth of 1 mm by
-  // the field.
+  // The path that a hand would take over the surface: the field brings each point to a depth of 1
+  // mm.
   std::vector<Vec3> path;
   Vec3 p = box.hi + 2.0 * kMm;
   for (Vec3 to = goal(); path.size() < 60000;) {
@@ -158,7 +159,7 @@ void compare(const char* name, const Mesh& mesh) {
     print(name, "half-spaces", measured(solid, bricks, mesh));
 }
 
-/// A mesh of a file, as large as the others: its longest side is 50 mm.
+/// A mesh from a file, scaled like the others: its longest side is 50 mm.
 Mesh meshOf(const char* path) {
   Mesh mesh = readMesh(path, kMm);
   Box3 box;

@@ -10,7 +10,7 @@
 namespace palpate::bench {
 namespace {
 
-/// Two decimals: repetitions differ by more.
+/// Two decimals: repetitions differ by more than that.
 double rounded(double value) { return std::round(100.0 * value) / 100.0; }
 
 std::string line(const std::string& sampler, const Times& t, const Times& yardstick) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Shortest times over all repetitions, as a table and as JSON under the machine's name.
+/// Collects the shortest times over all repetitions, as a table and as JSON under the machine's
+/// name.
 
 #include <benchmark/benchmark.h>
 
@@ -12,7 +13,7 @@
 
 namespace palpate::bench {
 
-/// One sampler on one shape. [ns] of a query.
+/// [ns] Times of a query, for one sampler on one shape.
 struct Times {
   double independent = 0.0;
   double dependent = 0.0;
@@ -21,7 +22,7 @@ struct Times {
 /// Names of benchmarks are "shape|sampler|independent" and "...|dependent".
 class Results final : public benchmark::BenchmarkReporter {
  public:
-  /// A row of the table, in its order; benchmarks may run in any other.
+  /// Adds a row to the table, which keeps this order; benchmarks may run in any order.
   void expect(const std::string& shape, const std::string& sampler) { (void)at(shape, sampler); }
 
   bool ReportContext(const Context&) override { return true; }

@@ -1,6 +1,6 @@
 #pragma once
-/// Samplers of others on the same grid and path: each runs the whole path once, for value and
-/// gradient.
+/// Samplers of other libraries on the same grid and path: each runs along the whole path once, for
+/// value and gradient.
 
 #include <functional>
 #include <span>
@@ -11,19 +11,19 @@
 
 namespace palpate::bench {
 
-/// A run returns something that depends on every result.
+/// A run returns a number that depends on every result.
 struct Run {
   std::string sampler;
-  /// Queries do not wait for one another.
+  /// Queries do not wait for each other.
   std::function<double(std::span<const Vec3>)> independent;
   /// Each position depends on the last result, by an amount too small to change it.
   std::function<double(std::span<const Vec3>)> dependent;
 };
 
-/// What `dependent` adds to a position, of a result.
+/// The factor of a result that `dependent` adds to a position.
 inline constexpr double kNothing = 1e-40;
 
-/// `sample(p)` gives something with `value` and `gradient`.
+/// `sample(p)` returns an object with `value` and `gradient`.
 template <class Sample>
 Run makeRun(std::string sampler, Sample sample) {
   const auto total = [](const auto& s) {
@@ -45,9 +45,9 @@ Run makeRun(std::string sampler, Sample sample) {
   return run;
 }
 
-/// BoxStencil with its gradient; BoxSampler and QuadraticSampler with six differences.
+/// BoxStencil with its own gradient; BoxSampler and QuadraticSampler with six differences.
 [[nodiscard]] std::vector<Run> openvdbRuns(const vdb::LevelSet& grid);
-/// Order 1 with its gradient; orders 2 and 3 with six differences.
+/// Order 1 with its own gradient; orders 2 and 3 with six differences.
 [[nodiscard]] std::vector<Run> nanovdbRuns(const vdb::LevelSet& grid);
 
 inline constexpr const char* kYardstick = "OpenVDB BoxStencil";

@@ -14,7 +14,7 @@ struct Sampled {
   nanovdb::Vec3f gradient;
 };
 
-/// The grid once more, as NanoVDB has it; shared by the runs.
+/// The grid converted to NanoVDB; shared by the runs.
 struct NanoGrid {
   explicit NanoGrid(const vdb::LevelSet& grid)
       : handle(nanovdb::openToNanoVDB(*grid.impl().grid)),

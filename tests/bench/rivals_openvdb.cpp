@@ -12,7 +12,7 @@ struct Sampled {
   openvdb::Vec3f gradient;
 };
 
-/// [voxels] of a point [m].
+/// Converts a point [m] to voxels.
 class ToIndex {
  public:
   explicit ToIndex(const vdb::LevelSet& grid)

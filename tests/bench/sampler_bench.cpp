@@ -1,5 +1,5 @@
-// Value and gradient out of a grid, along a path: ours beside OpenVDB's and NanoVDB's samplers, in
-// one run. See README.md.
+// Value and gradient of a grid along a path: our samplers compared with those of OpenVDB and
+// NanoVDB, in one run. See README.md.
 
 #include <benchmark/benchmark.h>
 
@@ -34,7 +34,8 @@ void registerRun(const std::shared_ptr<const Shape>& shape, const Run& run, cons
                  const std::function<double(std::span<const Vec3>)>& walk) {
   benchmark::RegisterBenchmark((shape->name + "|" + run.sampler + "|" + kind).c_str(),
                                [shape, walk](benchmark::State& state) {
-                                 // Other rows ran in between: the first walk warms the caches up.
+                                 // Other rows ran in between: a first, untimed walk warms the
+                                 // caches.
                                  benchmark::DoNotOptimize(walk(shape->path));
                                  for (auto _ : state) benchmark::DoNotOptimize(walk(shape->path));
                                  state.counters["queries"] =

@@ -1,5 +1,5 @@
-// The steps of the voxels that a hand feels when it strokes over a label: our surface beside those
-// of OpenVDB's topologyToLevelSet, with the same sampler, renderer and path.
+// The steps of voxels that a hand feels when it strokes over a label: our surface compared with
+// those of OpenVDB's topologyToLevelSet, with the same sampler, renderer and path.
 //   palpate_scan_stroke LABELS.nii.gz LABEL X FROM TO [SVG]
 // strokes in mm (RAS) along z on the front of LABEL, 100 mm/s, a tick a millisecond.
 
@@ -23,7 +23,7 @@ namespace palpate::bench {
 namespace {
 
 constexpr double kMm = 1e-3;
-constexpr double kStep = 0.1 * kMm;  // of the hand in a tick
+constexpr double kStep = 0.1 * kMm;  // the hand's step in a tick
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Stroke {
@@ -37,8 +37,8 @@ FieldPtr ours(const vdb::Image& image, int label, double voxel) {
   return vdb::gridField(vdb::surfaceFromLabels(image, {.values = {label}}, bake));
 }
 
-/// Their tool takes the voxels of a grid, so the label's go into cubic ones of the smallest
-/// spacing, each the nearest.
+/// OpenVDB's tool needs cubic voxels, so the label is resampled to cubes of the smallest spacing,
+/// by the nearest voxel.
 FieldPtr theirs(const vdb::Image& image, int label, double voxel, int smoothing) {
   vdb::initializeOpenVdb();
   openvdb::MaskGrid mask;
@@ -71,12 +71,12 @@ FieldPtr theirs(const vdb::Image& image, int label, double voxel, int smoothing)
     }
   }
   constexpr int kHalfWidth = 6;
-  constexpr int kClosing = 1;  // their default
+  constexpr int kClosing = 1;  // the tool's default
   const auto grid = openvdb::tools::topologyToLevelSet(mask, kHalfWidth, kClosing, 0, smoothing);
   return vdb::gridField(vdb::makeLevelSet(grid, "mm"));
 }
 
-/// [m] y of the front face at (x, z), from far outside; NaN if there is none.
+/// [m] y of the front face at (x, z), searched from far outside; NaN if there is none.
 double frontAt(const Field& field, double x, double z) {
   const Box3 box = field.bounds();
   double outside = box.hi.y;
@@ -95,7 +95,8 @@ double frontAt(const Field& field, double x, double z) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// A straight way of the hand, everywhere at least 1 mm below the surface; one for all surfaces.
+/// A straight path of the hand, everywhere at least 1 mm below the surface; the same for all
+/// surfaces.
 std::vector<Vec3> handPath(const Field& field, const Stroke& stroke) {
   const auto count = static_cast<std::size_t>((stroke.to - stroke.from) / kStep);
   const double a = frontAt(field, stroke.x, stroke.from);
@@ -131,7 +132,7 @@ std::vector<Vec3> strokeOver(const FieldPtr& field, const std::vector<Vec3>& pat
   layer.wall.material = "bone";
   description.layers = {layer};
   const auto renderer = makeRenderer(compile(description));
-  // From outside down to the first point, before what counts.
+  // From outside down to the first point, before the measurement begins.
   const Vec3 start = path.front() + Vec3(0.0, 20.0 * kMm, 0.0);
   for (int i = 0; i < 200; ++i) {
     (void)renderer->update({start + (i / 200.0) * (path.front() - start), Vec3(0.0), 1e-3});
@@ -153,8 +154,8 @@ struct Spectrum {
   std::vector<std::pair<double, double>> amplitudes;  // [1/m], [degree]
 };
 
-/// Amplitudes of the direction over spatial frequency: Hann's window, all three components
-/// together.
+/// Amplitudes of the direction over spatial frequency: with Hann's window, all three components
+/// combined.
 Spectrum spectrumOf(std::string name, const std::vector<Vec3>& directions) {
   Spectrum result;
   result.name = std::move(name);
@@ -166,8 +167,8 @@ Spectrum spectrumOf(std::string name, const std::vector<Vec3>& directions) {
     result.jitter_max = std::max(result.jitter_max, turn);
   }
   result.jitter_rms = std::sqrt(result.jitter_rms);
-  // Straight changes from end to end are the shape's; Hann's window takes the rest of the ends
-  // away.
+  // A linear change from end to end belongs to the shape, so it is subtracted; Hann's window
+  // removes what remains at the ends.
   const Vec3 first = directions.front();
   const Vec3 slope = (directions.back() - first) / static_cast<double>(n - 1);
   std::vector<Vec3> left(n);
@@ -186,7 +187,7 @@ Spectrum spectrumOf(std::string name, const std::vector<Vec3>& directions) {
       real += left[i] * std::cos(phase);
       imaginary += left[i] * std::sin(phase);
     }
-    // A sine of amplitude 1 gives n / 4 through Hann's window.
+    // Through Hann's window, a sine of amplitude 1 gives n / 4.
     const double amplitude = 4.0 / static_cast<double>(n) *
                              std::sqrt(glm::dot(real, real) + glm::dot(imaginary, imaginary));
     result.amplitudes.emplace_back(static_cast<double>(f) / length, amplitude / kDegree);

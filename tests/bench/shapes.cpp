@@ -21,7 +21,7 @@ Shape makeShape(std::string name, const vdb::LevelSet& grid, const FieldPtr& sur
   const double voxel = grid.info().voxel_size;
   const tools::Truth truth(surface);
   const auto points = tools::pointsNear(truth, 0.1 * voxel, 4 * kStrokes, voxel);
-  // Fine grids are stroked in finer steps, so that neighbors stay neighbors.
+  // Fine grids are stroked in finer steps, so that successive points stay in neighboring voxels.
   const double step = std::min(0.2e-3, 0.4 * voxel);
   for (const auto& stroke :
        tools::strokesAlong(truth, points, kStrokes, kStrokeLength, step, voxel)) {

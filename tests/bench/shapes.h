@@ -1,5 +1,5 @@
 #pragma once
-/// What is sampled: grids, and a path along the surface of each.
+/// The data to sample: grids, and a path along the surface of each.
 
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ struct Shape {
   std::vector<Vec3> path;  ///< [m] 0.2 mm or less apart, rising and falling through half a voxel
 };
 
-/// Torus 35/15 mm with voxels of 1 mm, turned and off the grid.
+/// Torus 35/15 mm with voxels of 1 mm, rotated and shifted against the grid.
 [[nodiscard]] Shape torusShape();
 /// Ball of 50 mm with voxels of 0.5 mm.
 [[nodiscard]] Shape ballShape();

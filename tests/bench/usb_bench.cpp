@@ -1,7 +1,6 @@
-// How fast commands and replies of a Falcon go through the libusb that everybody uses, and how
-// evenly: the kernel's side is emulated in this process (tests/devices/usbfs_emulation.h), so that
-// nothing but libusb, the driver and this machine's scheduler takes time. By the clock of the wall,
-// for information.
+// Speed and regularity of a Falcon's commands and replies through the usual libusb. The kernel's
+// side is emulated in this process (tests/devices/usbfs_emulation.h), so that only libusb, the
+// driver and this machine's scheduler take time. Measured in wall-clock time, for information.
 //   palpate_usb_bench [SECONDS]   for each row (default 2)
 
 #include <pthread.h>
@@ -30,7 +29,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A real-time priority of this thread; those that were made before keep theirs.
+/// Gives this thread a real-time priority; threads made before keep theirs.
 class Priority {
  public:
   Priority() {
@@ -50,10 +49,10 @@ class Priority {
   bool is_granted_ = false;
 };
 
-/// Calls `cycle` for `seconds`; false from it ends the process.
+/// Calls `cycle` for `seconds`; if it returns false, the process ends.
 void measure(const char* what, unsigned load, bool wants_priority, double seconds,
              const std::function<bool()>& cycle) {
-  // The kernel takes the processor from a real-time thread that computes for 0.95 s of a second.
+  // The kernel preempts a real-time thread that computes for 0.95 s of a second.
   constexpr std::chrono::milliseconds kBusy(400);
   constexpr std::chrono::milliseconds kRest(100);
   const BusyThreads others(load);
@@ -85,7 +84,7 @@ void measure(const char* what, unsigned load, bool wants_priority, double second
               micros(0.999), 1e-3 * static_cast<double>(times.longest()));
 }
 
-/// One command out, packets in until a reply is whole.
+/// Sends one command, and reads packets until a reply is complete.
 bool exchange(usb::Transport& transport, falcon::Parser& parser) {
   static const falcon::Packet idle = falcon::encode({});
   if (transport.send(idle) != usb::Status::kOk) return false;

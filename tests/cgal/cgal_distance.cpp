@@ -47,7 +47,7 @@ double CgalDistance::to(const Vec3& p) const {
 }
 
 bool CgalDistance::isInside(const Vec3& p) const {
-  // Along no plane of symmetry, so that edges are not met.
+  // Not in a plane of symmetry, so that the ray does not meet edges.
   const Kernel::Vector_3 along(0.4711, 0.1742, 0.8646);
   std::vector<Triangles::const_iterator> met;
   tree_->tree.all_intersected_primitives(Kernel::Ray_3(pointOf(p), along), std::back_inserter(met));
@@ -63,7 +63,7 @@ double CgalDistance::volume(double spacing) const {
   const Kernel::Vector_3 up(0.0, 0.0, 1.0);
   double length = 0.0;
   std::vector<Triangles::const_iterator> met;
-  std::vector<std::pair<double, int>> walls;  // by height: how many walls are entered
+  std::vector<std::pair<double, int>> walls;  // sorted by height: number of walls entered
   for (double x = box.xmin() + 0.517 * spacing; x < box.xmax(); x += spacing) {
     for (double y = box.ymin() + 0.483 * spacing; y < box.ymax(); y += spacing) {
       met.clear();

@@ -1,5 +1,5 @@
 #pragma once
-// Distances to meshes and their volumes, by CGAL in double: nothing of ours is in them.
+// Distances to meshes and their volumes, computed by CGAL in double without any code of ours.
 
 #include <memory>
 
@@ -17,11 +17,12 @@ class CgalDistance {
 
   [[nodiscard]] double to(const Vec3& p) const;
 
-  /// Whether the walls on a ray from p, those left less those entered, are any: its winding number,
-  /// of a closed mesh.
+  /// Whether p is inside a closed mesh: on a ray from p, the walls left minus the walls entered are
+  /// not 0 (the winding number).
   [[nodiscard]] bool isInside(const Vec3& p) const;
 
-  /// [m^3] of all that the winding number is not 0 of: by lines along z, `spacing` [m] apart.
+  /// [m^3] Volume of the region whose winding number is not 0, by lines along z, `spacing` [m]
+  /// apart.
   [[nodiscard]] double volume(double spacing) const;
 
  private:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?: \d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
-# A time or an amount of memory depends on the machine, and so does the unit that it is printed in.
+# A time or an amount of memory depends on the machine, and so does its unit.
 VARYING = {
     "times": re.compile(r"(?<![\w.])\d[\d ]*(?:\.\d+)?(?:e[-+]?\d+)? (?:ns|us|ms|s|min)\b"),
     "sizes": re.compile(r"(?<![\w.])\d[\d ]*(?:\.\d+)?(?:e[-+]?\d+)? (?:B|kB|KB|MB|GB|KiB|MiB|GiB|bytes)(?!\w)"),

@@ -37,7 +37,7 @@ class Blocks(unittest.TestCase):
         run("```console\n$ echo 'force 1.23 N'\nforce 1.24 N\n```\n")
         run("```console\n$ echo 'force -0.0 N'\nforce 0.0 N\n```\n")
         run("```console\n$ echo '1 720 065  voxels'\n1 720 065 voxels\n```\n")
-        with self.assertRaises(run_blocks.Mismatch):  # a count is exact
+        with self.assertRaises(run_blocks.Mismatch):  # counts must match exactly
             run("```console\n$ echo '4 ports'\n5 ports\n```\n")
         for wrong in ("force 1.25 N", "force 1.23 mN", "force 11.23 N", "force -1.23 N"):
             with self.assertRaises(run_blocks.Mismatch, msg=wrong):

@@ -1,4 +1,5 @@
-// The command with an input device in the hand. It opens what umockdev makes in this process.
+// The command with an input device in the hand. It opens a device that umockdev emulates in this
+// process.
 
 #ifdef PALPATE_TOOLS
 
@@ -18,7 +19,7 @@ class EvdevCommand : public ::testing::Test {
     for (const int axis : {REL_X, REL_Y, REL_WHEEL}) {
       mouse_.has_relative.set(static_cast<std::size_t>(axis));
     }
-    // The hand begins 1 mm above a wall.
+    // The hand starts 1 mm above a wall.
     (void)folder_.file("wall.yaml", kWallBelow);
   }
   CommandResult run(const std::vector<std::string>& arguments) {

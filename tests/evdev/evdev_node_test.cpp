@@ -1,5 +1,5 @@
-// The driver of input devices over the C library's open(), ioctl() and read(), which umockdev
-// answers as the kernel would.
+// The driver of input devices through the C library's open(), ioctl() and read(), which umockdev
+// answers like the kernel.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -130,13 +130,14 @@ TEST_F(EvdevNode, AccessThatIsDeniedIsSaidWithItsRemedy) {
   const std::string root = folder;
   g_free(folder);
   ASSERT_EQ(chmod(root.c_str(), 0755), 0);
-  // umockdev's own socket stays open to everybody: it is not what is denied here.
+  // umockdev's own socket stays accessible to everybody; this test denies access to the device
+  // only.
   ASSERT_EQ(chmod((root + "/ioctl" + mouse.path()).c_str(), 0777), 0);
   ASSERT_EQ(chmod((root + mouse.path()).c_str(), 0), 0);
   const uid_t self = geteuid();
   constexpr uid_t kNobody = 65534;
   if (self == 0) {
-    ASSERT_EQ(seteuid(kNobody), 0);  // root may open everything
+    ASSERT_EQ(seteuid(kNobody), 0);  // root could open everything
   }
   const auto list = listInputDevices();
   std::vector<Error> errors;
@@ -180,11 +181,12 @@ TEST_F(EvdevNode, AKernelThatRefusesTheClockLeavesTheTimeOfTheReading) {
   const auto device = makeEvdev({.meters_per_count = 1e-4});
   device->open();
   EXPECT_EQ(mouse.clock(), -1);
-  mouse.report(1'700'000'000'000'000'000, {{EV_REL, REL_X, 50}});  // of the wall clock
+  mouse.report(1'700'000'000'000'000'000, {{EV_REL, REL_X, 50}});  // in wall-clock time
   DeviceState state;
   ASSERT_EQ(device->read(state), DeviceStatus::kOk);
   EXPECT_NEAR(state.position.x, 5e-3, kRounding);
-  EXPECT_NEAR(state.velocity.x * state.time, 5e-3, kRounding);  // of the first reading since open()
+  // The time of the first reading since open()
+  EXPECT_NEAR(state.velocity.x * state.time, 5e-3, kRounding);
 }
 
 TEST_F(EvdevNode, AStickThatIsHeldWhenItIsOpenedMoves) {
@@ -253,7 +255,7 @@ TEST_F(EvdevNode, UnpluggedAtAnyCallOfOpenItIsADeviceError) {
       EXPECT_FALSE(error.problem().hint.empty());
     }
   }
-  EXPECT_GT(calls, 10);  // three of what it has, four ranges, clock, keys, four values
+  EXPECT_GT(calls, 10);  // capabilities, ranges, clock, keys and values
 }
 
 TEST_F(EvdevNode, UnpluggedInUseItSaysSoUntilItIsOpenedAgain) {

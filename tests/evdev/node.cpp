@@ -75,7 +75,7 @@ void Node::unplugAfter(int calls) {
   calls_left_ = calls;
 }
 
-/// What the kernel writes for the request `number`; empty: it has none.
+/// The bytes that the kernel would return for the request `number`; empty: it has none.
 std::vector<unsigned char> Node::bytesFor(unsigned number) {
   if (number == 0x06) return {name.c_str(), name.c_str() + name.size() + 1};
   if (number == 0x18) return bytesOf(keys);

@@ -1,6 +1,6 @@
 #pragma once
-// An event node that umockdev makes: open(), ioctl() and read() of this process go to it, by its
-// library that is loaded first. Needs no right and no kernel module.
+// An event node that umockdev makes: open(), ioctl() and read() of this process go to it through a
+// library that is loaded first. Needs neither special rights nor a kernel module.
 
 #include <linux/input.h>
 #include <umockdev.h>
@@ -15,7 +15,7 @@
 
 namespace palpate::testing {
 
-/// One testbed a process at a time.
+/// At most one testbed in a process at a time.
 class Testbed {
  public:
   Testbed() : bed_(umockdev_testbed_new()) {}
@@ -28,7 +28,7 @@ class Testbed {
   UMockdevTestbed* bed_;
 };
 
-/// Answers as the kernel's evdev does. The calls come from a thread of umockdev's.
+/// Answers like the kernel's evdev. The calls come from one of umockdev's threads.
 class Node {
  public:
   /// /dev/input/event`number` in `bed`.
@@ -37,7 +37,7 @@ class Node {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  // What it has and is at; set before it is opened, or while nobody asks.
+  // Capabilities and present state; set them before the node is opened, or while nobody reads it.
   std::string name = "mock";
   std::bitset<KEY_CNT> has_keys, keys;
   std::bitset<REL_CNT> has_relative;
@@ -45,17 +45,16 @@ class Node {
   bool refuses_clock = false;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Puts events into the queue, with a SYN_REPORT after them, all of the time `at` [ns,
-  /// monotonic].
+  /// Puts events into the queue, followed by a SYN_REPORT, all with the time `at` [ns, monotonic].
   struct Input {
     int type, code, value;
   };
   void report(std::int64_t at, const std::vector<Input>& inputs);
-  /// The same, of the time when the reading `number` (from 0) comes.
+  /// The same, with the time at which reading `number` (from 0) arrives.
   void reportAtRead(int number, const std::vector<Input>& inputs);
   void unplug();                                      ///< from now on: ENODEV
-  void unplugAfter(int calls);                        ///< of ioctl(): ENODEV from then on
-  [[nodiscard]] int clock() const { return clock_; }  ///< that EVIOCSCLOCKID has set; -1: none
+  void unplugAfter(int calls);                        ///< after that many ioctl() calls: ENODEV
+  [[nodiscard]] int clock() const { return clock_; }  ///< the one set by EVIOCSCLOCKID; -1: none
 
  private:
   static gboolean onIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer self);

@@ -1,4 +1,5 @@
-// Stands for Force Dimension's libdhd.so: it reads what a test sets, and remembers the calls.
+// Stands in for Force Dimension's libdhd.so: it returns values that a test sets, and records the
+// calls.
 
 #include <algorithm>
 #include <array>
@@ -8,8 +9,8 @@ struct Fake {
   std::array<double, 3> velocity;
   std::array<double, 3> force;
   int button;
-  int answer;      // of dhdGetPosition
-  int set_answer;  // of dhdSetForce
+  int answer;      // return value of dhdGetPosition
+  int set_answer;  // return value of dhdSetForce
   int is_absent;
   int is_open;
   int force_is_enabled;

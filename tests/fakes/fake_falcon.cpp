@@ -1,10 +1,10 @@
-// Plugs an emulated Falcon into a program that was started with this library before all others
-// (LD_PRELOAD): its node is the open descriptor kDescriptor, and time is the Falcon's.
-// FAKE_FALCON_HAND names a file of where the hand wants to be, rows `t x y z` in s and m of the
-// device's frame; FAKE_FALCON_LOG one for what the motors gave, rows `x,y,z,quantum` in N, a
-// command each (FalconEmulator::quantum). At command number FAKE_FALCON_AT the process gets the
-// signal FAKE_FALCON_SIGNAL, or the cable is pulled if that is 0. Everything between the command
-// line and the kernel is the real thing.
+// Connects an emulated Falcon to a program that is started with this library preloaded
+// (LD_PRELOAD): its device node is the open descriptor kDescriptor, and time is the Falcon's.
+// FAKE_FALCON_HAND names a file with the path that the hand intends, rows `t x y z` in s and m of
+// the device's frame; FAKE_FALCON_LOG one for the forces of the motors, rows `x,y,z,quantum` in N,
+// one for each command (FalconEmulator::quantum). At command number FAKE_FALCON_AT the process gets
+// the signal FAKE_FALCON_SIGNAL, or, if that is 0, the cable is unplugged. Everything between the
+// command line and the kernel is the real code.
 
 #include <unistd.h>
 
@@ -75,7 +75,7 @@ class PluggedFalcon {
     }
   }
 
-  /// Straight from row to row; at rest before the first and after the last.
+  /// Linear from row to row; at rest before the first and after the last one.
   [[nodiscard]] Vec3 target(double time) const {
     if (way_.empty()) return kOrigin;
     if (time <= way_.front().time) return way_.front().place;
@@ -99,7 +99,7 @@ PluggedFalcon& plugged() {
   return one;
 }
 
-/// Before main(), so that the descriptor is open.
+/// Runs before main(), so that the descriptor is open by then.
 [[maybe_unused]] const bool kIsPlugged = (plugged(), true);
 
 }  // namespace

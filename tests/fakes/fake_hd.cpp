@@ -1,5 +1,5 @@
-// Stands for OpenHaptics' libHD.so: it reads what a test sets, and remembers the calls. It has no
-// thread: a turn of its scheduler is fakeTurn().
+// Stands in for OpenHaptics' libHD.so: it returns values that a test sets, and records the calls.
+// It has no thread: fakeTurn() runs its scheduler once.
 
 #include <algorithm>
 #include <array>
@@ -21,8 +21,8 @@ struct Fake {
   int is_running;
   int is_open;
   int force_is_enabled;
-  int frames;       // that are open
-  int torn_frames;  // calls outside of one
+  int frames;       // number of open frames
+  int torn_frames;  // calls outside of a frame
 };
 
 namespace {
@@ -68,7 +68,7 @@ void hdGetDoublev(unsigned what, double* out) {
   if (what == 0x2050) std::copy(fake.position_mm.begin(), fake.position_mm.end(), out);
   if (what == 0x2051) std::copy(fake.velocity_mm.begin(), fake.velocity_mm.end(), out);
   if (what == 0x2052) {
-    // A quarter turn about z: the handle's x is the frame's y.
+    // A quarter turn about z: the handle's x axis is the frame's y axis.
     constexpr std::array<double, 16> kTurn = {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     std::copy(kTurn.begin(), kTurn.end(), out);
   }

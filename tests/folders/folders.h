@@ -1,6 +1,6 @@
 #pragma once
-// Where the sources and the build are. One file of the tests holds these paths, so that the
-// compiler's cache serves the other files in every clone.
+// The folders of the sources and of the build. Only one source file of the tests contains these
+// paths, so that the compiler cache serves the other files in every clone.
 
 #include <string>
 

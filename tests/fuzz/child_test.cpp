@@ -1,4 +1,4 @@
-// Foreign libraries in a process of their own.
+// Foreign libraries that run in a child process.
 
 #include "child/child.h"
 
@@ -95,8 +95,8 @@ TEST(Child, OneThatNeverEndsIsEndedByItsLimit) {
 TEST(Child, OneThatWantsAllMemoryIsRefusedIt) {
   const Limits limits({.in_child = true, .memory = std::uint64_t{64} << 20U});
   const auto work = [](ChildWriter& out) {
-    // In builds with the address sanitizer there is no limit of memory; half a gigabyte is then
-    // just had.
+    // In builds with the address sanitizer there is no limit of memory: the half gigabyte is simply
+    // allocated.
     std::vector<char> much(std::size_t{512} << 20U, 'x');
     out.put(much[1 << 20U]);
   };

@@ -79,7 +79,7 @@ void move(std::string& b, Random& r) {
   b.erase(from, part.size());
   b.insert(placeIn(b, r), part);
 }
-/// A number that is written out becomes one that does not fit.
+/// Replaces a number in text form by one that does not fit.
 void hugeText(std::string& b, Random& r) {
   const std::size_t from = placeIn(b, r);
   const std::size_t at = b.find_first_of("0123456789", from);

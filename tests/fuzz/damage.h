@@ -1,5 +1,5 @@
 #pragma once
-// Kinds of damage that files come with, and that attackers make.
+// Kinds of damage that occur in files, and that attackers make.
 
 #include <cstdint>
 #include <random>
@@ -15,7 +15,7 @@ struct Damage {
   void (*apply)(std::string& bytes, Random& random);
 };
 
-/// Seventeen of them.
+/// All seventeen kinds.
 [[nodiscard]] std::span<const Damage> damages();
 
 }  // namespace palpate::fuzz

@@ -10,7 +10,7 @@ void put(std::string& to, std::uint32_t number, int bytes) {
   for (int i = 0; i < bytes; ++i) to += static_cast<char>(number >> (8 * i));
 }
 
-/// One element, explicit little endian. `tag` is group and element, as in 0x00080016.
+/// One element, explicit little endian. `tag` holds group and element, as in 0x00080016.
 std::string element(std::uint32_t tag, const std::string& vr, std::string value) {
   if (value.size() % 2 != 0) value += vr == "UI" ? '\0' : ' ';
   std::string out;
@@ -73,7 +73,8 @@ std::string segmentation(Kind kind) {
   }
   std::string pixels;
   if (kind == Kind::kBinary) {
-    // 48 bits: the frames of the first segment have their upper half, those of the second the rest.
+    // 48 bits: in the frames of the first segment the upper half of the pixels is set, in those of
+    // the second the rest.
     pixels = std::string("\x3F\x00\x3F\x00\xFC\x0F", 6);
   } else {
     for (int i = 0; i < 12 * static_cast<int>(frames.size()); ++i) {

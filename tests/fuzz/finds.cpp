@@ -1,4 +1,4 @@
-// Files that once did harm, made here so that nothing large or strange is kept.
+// Files that once did harm, made here so that nothing large or strange has to be stored.
 
 #include <cstdint>
 #include <cstring>
@@ -23,7 +23,8 @@ std::string with(std::string bytes, std::size_t at, Number value) {
   return bytes;
 }
 
-/// Where the lengths of Blosc chunks are: they repeat at the end of the chunk's own head.
+/// The places of the lengths of Blosc chunks: they are repeated at the end of the chunk's own
+/// header.
 std::vector<std::size_t> bloscLengths(const std::string& bytes) {
   std::vector<std::size_t> places;
   for (std::size_t at = 0; at + 24 < bytes.size(); ++at) {
@@ -41,7 +42,7 @@ void addGrids(std::vector<Find>& out) {
   const std::string sphere = vdbSeeds().front();
   const std::vector<std::size_t> places = bloscLengths(sphere);
   const std::size_t last = places.back();
-  // Not packed, so the length says; OpenVDB reads that many bytes into a leaf of 2048.
+  // A negative length means: not packed. OpenVDB reads that many bytes into a leaf of 2048.
   out.push_back({"vdb_blosc_length_all_ones", "vdb", with<std::int64_t>(sphere, last, -1)});
   for (std::size_t before = 1; before < 8; ++before) {
     out.push_back({"vdb_blosc_length_ones_before_" + std::to_string(before), "vdb",
@@ -53,7 +54,7 @@ void addGrids(std::vector<Find>& out) {
                  with<std::int64_t>(sphere, last, std::int64_t{3} << 30U)});
   out.push_back({"vdb_blosc_head_beyond_its_chunk", "vdb",
                  with<std::uint32_t>(sphere, last + 20, 0x00FFFFFF)});
-  // A text in the metadata of three gigabytes.
+  // A text of three gigabytes in the metadata.
   const std::size_t unit = sphere.find("length_unit");
   const std::size_t size = unit + std::strlen("length_unit") + 4 + std::strlen("string");
   out.push_back({"vdb_text_of_gigabytes", "vdb", with<std::uint32_t>(sphere, size, 0xB8000000)});
@@ -86,8 +87,8 @@ void addMeshes(std::vector<Find>& out) {
                    for (int i = 0; i < 100'000; ++i) text += R"({"extras":)";
                    return text;
                  }()});
-  // Found by the fuzzer: who believes the promised length looks at no part, and Assimp asks for the
-  // first one's gigabytes.
+  // Found by the fuzzer: a reader that trusts the stated total length sees no chunk, while Assimp
+  // allocates the gigabytes that the first one states.
   const std::string glb = seedsOf("glb").front();
   for (const std::uint32_t promised : {1U, 12U, 19U}) {
     out.push_back({"glb_promises_" + std::to_string(promised), "glb",
@@ -98,7 +99,7 @@ void addMeshes(std::vector<Find>& out) {
       {"glb_promises_its_first_part", "glb",
        with<std::uint32_t>(with<std::uint32_t>(glb, 8, static_cast<std::uint32_t>(second)), second,
                            0xFC0200F0)});
-  // Every second corner is drawn in: no two ears stand side by side for long.
+  // Every second corner is pulled inwards, so that two ears are never adjacent for long.
   std::string star = "v 0 0 0\n";
   const int corners = 60'000;
   std::string face = "f";

@@ -1,4 +1,4 @@
-// Each damaged file that once did harm, and what its reader answers now.
+// For each damaged file that once did harm: the answer of its reader now.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -39,7 +39,7 @@ const Find& findNamed(const std::string& name) {
   return *found;
 }
 
-/// What the reader says of a find.
+/// The error of the reader for a find.
 Problem answerTo(const std::string& name) {
   const Find& find = findNamed(name);
   const TempFolder folder;
@@ -65,7 +65,7 @@ TEST(Finds, AVdbChunkWhoseLengthIsOnesDoesNotOverwriteTheHeap) {
   EXPECT_EQ(answerTo("vdb_blosc_head_beyond_its_chunk").code, "vdb.unreadable");
 }
 
-/// [bytes] that this process had at most so far.
+/// [bytes] The largest memory of this process so far.
 std::int64_t peakMemory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -77,7 +77,7 @@ TEST(Finds, ATextOfGigabytesInAVdbFileTakesNoMemory) {
   EXPECT_EQ(answerTo("vdb_text_of_gigabytes").code, "vdb.unreadable");
   EXPECT_EQ(answerTo("vdb_name_of_gigabytes").code, "vdb.unreadable");
   EXPECT_EQ(answerTo("vdb_blosc_length_of_gigabytes").code, "vdb.unreadable");
-  // Three texts of 3 GB are asked for; finding the seeds alone takes some megabytes.
+  // The file asks for three texts of 3 GB; finding the seeds alone takes some megabytes.
   EXPECT_LT(peakMemory() - before, std::int64_t{256} << 20U);
 }
 
@@ -117,7 +117,7 @@ TEST(Finds, PackedDataThatUnpackToFarMoreThanTheHeaderSaysAreRefused) {
 
 TEST(Finds, AHundredThousandLayersAreRefusedByTheirNumber) {
   EXPECT_EQ(answerTo("yaml_100000_layers").code, "document.size");
-  // Few enough to be read as YAML, too many for what is kept of each pair of regions.
+  // Few enough layers to be read as YAML, too many for the data kept for each pair of regions.
   const Problem problem = answerTo("yaml_5000_layers");
   EXPECT_EQ(problem.code, "scene.length");
   EXPECT_NE(problem.message.find("5000"), std::string::npos) << problem.message;
@@ -139,8 +139,9 @@ std::string polygon(int corners) {
 }
 
 TEST(Finds, AConvexFaceOfManyCornersIsCutAtOnceAndAnyOtherWithinBounds) {
-  // The search for ears takes the square of the corners of a convex face, the cube of the worst
-  // one's. Beyond some ten thousand corners a regular polygon's turns are lost in rounding.
+  // The time to find ears grows with the square of the corners for a convex face, and with the cube
+  // for the worst one. Beyond some ten thousand corners the turns of a regular polygon vanish in
+  // rounding.
   const TempFolder folder;
   const vdb::Mesh mesh = vdb::readMesh(folder.file("disc.obj", polygon(9000)), 1.0);
   EXPECT_EQ(mesh.triangles.size(), 8998U);
@@ -149,7 +150,7 @@ TEST(Finds, AConvexFaceOfManyCornersIsCutAtOnceAndAnyOtherWithinBounds) {
     area += 0.5 *
             glm::cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]).z;
   }
-  EXPECT_NEAR(area, 3.14159265358979323846, 1e-6);  // pi less 2 pi^3 / (3 n^2)
+  EXPECT_NEAR(area, 3.14159265358979323846, 1e-6);  // pi minus 2 pi^3 / (3 n^2)
   EXPECT_EQ(answerTo("obj_comb_of_60000_corners").code, "mesh.polygon");
 }
 
@@ -165,10 +166,10 @@ TEST(Finds, NamesInLatin1BecomeUtf8) {
       vdb::readLabelTable(folder.file("a.txt", findNamed("labels_in_latin_1").bytes));
   EXPECT_EQ(table.names.at(1), "l\xC3\xA9sion");
   EXPECT_EQ(table.names.at(2), "k\xC3\xB6rper");
-  // What is UTF-8 stays as it is, and so does what looks like Latin-1 in it.
+  // UTF-8 text stays as it is, including parts of it that look like Latin-1.
   EXPECT_EQ(vdb::readLabelTable(folder.file("b.txt", "1 l\xC3\xA9sion 1 2 3 4\n")).names.at(1),
             "l\xC3\xA9sion");
-  // Overlong and cut forms are not UTF-8.
+  // Overlong and truncated forms are not UTF-8.
   EXPECT_EQ(vdb::readLabelTable(folder.file("c.txt", "1 a\xC0\xAF\n")).names.at(1),
             "a\xC3\x80\xC2\xAF");
 }
@@ -187,7 +188,7 @@ TEST(Finds, PipesAreNotWaitedFor) {
   }
 }
 
-/// A mesh of one vertex many times over, and one face.
+/// A mesh with one vertex many times, and one face.
 std::string many(std::string_view kind, int vertices) {
   std::string points;
   for (int i = 0; i < vertices; ++i) points += std::to_string(i) + " 0 0\n";
@@ -210,8 +211,8 @@ std::string many(std::string_view kind, int vertices) {
   return "solid a\n" + facets + "endsolid a\n";
 }
 
-/// A stop that was asked for before the work begins: whatever polls it within the file's first
-/// bytes ends there.
+/// The user asks to stop before the work begins: a reader that polls within the first bytes of the
+/// file ends there.
 TEST(Finds, EveryReaderStopsWhenItIsAskedTo) {
   const std::atomic<bool> stop{true};
   struct Watch {
@@ -222,7 +223,7 @@ TEST(Finds, EveryReaderStopsWhenItIsAskedTo) {
   for (const char* name : {"nifti_gz", "nrrd", "metaimage", "dicom", "obj", "stl", "ply", "vtk",
                            "gltf", "vdb", "labels"}) {
     const Reader& reader = readerNamed(name);
-    // Polls come every thousand items, so there must be as many.
+    // Readers poll every thousand items, so the file must have as many.
     std::string bytes = seedsOf(name).front();
     if (std::string_view(name) == "obj") bytes = polygon(3000);
     if (std::string_view(name) == "stl" || std::string_view(name) == "ply" ||

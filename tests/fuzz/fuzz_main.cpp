@@ -1,5 +1,5 @@
-// One fuzzer for each reader: PALPATE_FUZZ_READER names it. What a reader throws that is not
-// palpate::Error ends the fuzzer, and so does whatever the sanitizers see.
+// One fuzzer for each reader: PALPATE_FUZZ_READER names it. An exception other than palpate::Error
+// ends the fuzzer, and so does any finding of the sanitizers.
 
 #include <cstddef>
 #include <cstdint>

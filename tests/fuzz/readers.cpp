@@ -30,7 +30,7 @@ void readGrids(const std::string& path) {
   (void)vdb::listVdb(path);
   (void)vdb::checkVdb(path);
 }
-/// With stand-ins for what belongs to palpate::vdb: the grammar is lib's.
+/// With stand-ins for the kinds that palpate::vdb adds: only lib's grammar is tested.
 void readSceneFile(const std::string& path) { (void)readScene(path, SceneRegistry{}); }
 void readTable(const std::string& path) { (void)vdb::readLabelTable(path); }
 void readHandPath(const std::string& path) { (void)devices::readPath(path); }
@@ -53,14 +53,14 @@ constexpr Reader kReaders[] = {
     {"vdb", ".vdb", readGrids},
 };
 
-/// The file's own folder: a reader of DICOM looks at all that is beside it.
+/// A separate folder for the file: a reader of DICOM looks at all files beside it.
 const palpate::testing::TempFolder& folder() {
   static const palpate::testing::TempFolder one;
   return one;
 }
 
-/// A slice alone makes no volume; with sound ones beside it the pixels are read as well, and
-/// structure sets have a series to lie in.
+/// A single slice does not make a volume; with sound slices beside it the pixels are read as well,
+/// and structure sets have a series to refer to.
 void putMoreSlices(const std::string& own) {
   for (const char* const z : {"1", "2"}) {
     const std::string path = own + "/slice" + z + ".dcm";

@@ -1,5 +1,5 @@
-// Sound files, every file that ever did harm, and some thousand damaged ones: each is read or
-// refused by an Error.
+// Sound files, every file that ever did harm, and some thousand damaged ones: each is either read,
+// or refused by an Error.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 class Replay : public ::testing::TestWithParam<Reader> {};
 
 TEST_P(Replay, ReadsWhatTheTestsOwnWritersMake) {
-  // Scenes name files beside them, and want readers that this program has not.
+  // Scenes name other files, and need readers that this program does not have.
   const bool may_be_refused = std::string_view(GetParam().name) == "yaml";
   int read = 0;
   for (const std::string& seed : seedsOf(GetParam().name)) {

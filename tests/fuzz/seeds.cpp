@@ -101,7 +101,7 @@ void put(std::string& to, std::uint32_t number, int bytes) {
   for (int i = 0; i < bytes; ++i) to += static_cast<char>(number >> (8 * i));
 }
 
-/// A slice whose pixels are packed by run lengths: the high bytes, then the low ones.
+/// A slice whose pixels are run-length encoded: first the high bytes, then the low ones.
 std::string packedDicom() {
   vdb::test::DicomFile file;
   file.with_pixels = false;
@@ -115,7 +115,7 @@ std::string packedDicom() {
   put(segments, 66, 4);
   segments.resize(64, '\0');
   for (const char value : {'\0', '\5'}) {
-    segments += static_cast<char>(257 - pixels);  // one value, so many times
+    segments += static_cast<char>(257 - pixels);  // a run: one value, repeated
     segments += value;
   }
   put(bytes, 0x00107FE0, 4);

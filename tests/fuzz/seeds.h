@@ -11,7 +11,7 @@ namespace palpate::fuzz {
 /// Sound files for the reader of that name; at least one.
 [[nodiscard]] std::vector<std::string> seedsOf(std::string_view reader);
 
-/// A file that crashed, hung or filled the memory once.
+/// A file that once crashed a reader, hung it or filled the memory.
 struct Find {
   std::string name;
   std::string reader;

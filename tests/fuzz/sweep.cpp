@@ -1,11 +1,11 @@
 // palpate_damage_sweep [MUTANTS] [SEED] [COMMAND] [FORMAT...]: damages files of every format in
-// every way, MUTANTS times each, and gives each to the command with 4 GB of address space and 20 s
-// more than the sound file takes (a scene may be one of a whole head). It reports signals, hangs,
-// exit codes that are not documented, and runs that took more than 1 GB for an input of less than
-// 10 MB, and keeps such inputs beside. Exit 1 if there are any. The command runs in forks of this
-// process, which have loaded its libraries already, as many formats at a time as there are
-// processors; with COMMAND, another build of palpate ("-": this one), it is started anew each time.
-// Formats that are named are the only ones.
+// every way, MUTANTS times each, and gives each file to the command. The limits are 4 GB of address
+// space and 20 s more than the sound file takes (a scene may be one of a whole head). Reports
+// signals, hangs, undocumented exit codes, and runs that took more than 1 GB for an input of less
+// than 10 MB, and keeps such inputs; exit 1 if there are any. The command runs in forks of this
+// process, which have its libraries loaded already, with as many formats at a time as there are
+// processors. With COMMAND, another build of palpate ("-": this one), that program is started for
+// each file. FORMATs restrict the sweep to these.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -38,10 +38,10 @@ namespace fs = std::filesystem;
 
 constexpr rlim_t kMemory = rlim_t{4} << 30U;
 constexpr double kSeconds = 20.0;
-constexpr double kMostSound = 300.0;  ///< [s] of a sound file
-/// A sound file that takes longer than this [s] is damaged in one of so many of its turns, and a
-/// quicker one stands in for it in the others: the scene of a whole head has the same readers as a
-/// small one, and takes a thousand times as long.
+constexpr double kMostSound = 300.0;  ///< [s] limit for a sound file
+/// [s] A sound file that takes longer than this is damaged only in some of its turns; in the others
+/// a quicker one replaces it: the scene of a whole head uses the same readers as a small one, and
+/// takes a thousand times as long.
 constexpr double kSlowSound = 0.5;
 constexpr std::size_t kTurnsOfSlow = 50;
 constexpr long kMostResident = 1L << 20U;  // [kB]
@@ -50,10 +50,11 @@ struct Run {
   int status = 0;
   bool timed_out = false;
   long resident = 0;     ///< [kB]
-  double seconds = 0.0;  ///< by the clock
+  double seconds = 0.0;  ///< wall-clock time
 };
 
-/// Does not return. `program` empty: the command that is part of this one.
+/// Becomes the command, and does not return. `program` empty: the command that is linked into this
+/// program.
 [[noreturn]] void become(const std::string& program, const std::vector<std::string>& arguments) {
   if (program.empty()) {
     const int code = palpate::tools::runCommand(arguments);
@@ -96,7 +97,7 @@ Run run(const std::string& program, const std::vector<std::string>& arguments, d
   return result;
 }
 
-/// What the command is asked to do with a file of that kind: read all of it.
+/// A command line that makes the command read all of a file of that kind.
 std::vector<std::string> commandFor(const Reader& reader, const std::string& file,
                                     const std::string& image) {
   const std::string name = reader.name;
@@ -111,7 +112,7 @@ std::vector<std::string> commandFor(const Reader& reader, const std::string& fil
   return {"query", file, "--at", "0,0,0"};
 }
 
-/// "" if all is well.
+/// A fault of the run; "" if there is none.
 std::string faultOf(const Run& run, std::size_t input) {
   if (run.timed_out) return "hangs";
   if (WIFSIGNALED(run.status)) return "signal " + std::to_string(WTERMSIG(run.status));
@@ -136,7 +137,7 @@ struct Sweep {
   std::string image;
 };
 
-/// Which sound file is damaged in turn `i`, by what each of them takes.
+/// Index of the sound file that is damaged in turn `i`; `sound` are their times.
 std::size_t turnOf(std::size_t i, const std::vector<double>& sound) {
   const std::size_t first = i % sound.size();
   if ((i / sound.size()) % kTurnsOfSlow == 0) return first;
@@ -154,7 +155,7 @@ Totals sweepFormat(const Sweep& sweep, const Reader& reader) {
   long most = 0;
   double seconds = 0.0;
   Totals totals;
-  // A folder of its own: DICOM series are all that is in one.
+  // A separate folder, because a DICOM series is everything in one folder.
   const fs::path own = sweep.folder / reader.name;
   fs::create_directories(own);
   if (std::string(reader.name) == "dicom") {
@@ -176,7 +177,7 @@ Totals sweepFormat(const Sweep& sweep, const Reader& reader) {
       std::string bytes = seeds[from];
       damage.apply(bytes, random);
       std::ofstream(file, std::ios::binary) << bytes;
-      // Twice what the sound file takes, as the machine may be busier now.
+      // Twice the time of the sound file, because the machine may be busier now.
       const Run result = run(sweep.program, command, 2.0 * sound[from] + kSeconds);
       ++totals.runs;
       seconds += result.seconds;
@@ -197,7 +198,7 @@ Totals sweepFormat(const Sweep& sweep, const Reader& reader) {
   return totals;
 }
 
-/// Waits for one of the processes that sweep a format each; what it found comes through `from`.
+/// Waits for one of the processes that each sweep a format; its findings come through `from`.
 void await(int from, Totals& all) {
   Totals totals;
   int status = 0;

@@ -1,4 +1,4 @@
-// The walk that stands before OpenVDB lets sound files pass, and follows them byte by byte.
+// The checks that run before OpenVDB accept sound files, and follow them byte by byte.
 
 #include "grid/vdb_walk.h"
 
@@ -32,7 +32,7 @@ void expectPasses(const std::string& bytes, const std::string& what) {
     SCOPED_TRACE(entry.name());
     const std::string type = entry.descriptor.gridType();
     ASSERT_TRUE(VdbWalk::canWalk(type)) << type;
-    // Of a stream that is read in order, open() has walked the trees too.
+    // If the stream is read in order, open() has checked the trees too.
     if (entry.has_tree) continue;
     EXPECT_NO_THROW(VdbWalk(stream).checkTree(entry.descriptor.getGridPos(), type,
                                               entry.descriptor.saveFloatAsHalf(), true));

@@ -1,4 +1,4 @@
-// palpate_fuzz_corpus FOLDER: writes what fuzzers start from to FOLDER/READER/, made anew each
+// palpate_fuzz_corpus FOLDER: writes the files that fuzzers start from to FOLDER/READER/, anew each
 // time.
 
 #include <cstdio>

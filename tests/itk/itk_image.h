@@ -1,5 +1,5 @@
 #pragma once
-/// What ITK makes of a scan.
+/// Reads scans with ITK.
 
 #include <array>
 #include <map>
@@ -14,11 +14,12 @@ struct ItkImage {
   std::map<double, std::size_t> histogram;
 };
 
-/// NIfTI, NRRD or MetaImage by its extension, of single numbers in three dimensions. @throws
+/// Reads NIfTI, NRRD or MetaImage, by extension, with scalar voxels in three dimensions. @throws
 /// std::runtime_error
 [[nodiscard]] ItkImage readWithItk(const std::string& path);
 
-/// The one DICOM series in a folder, by ITK's own search for its files. @throws std::runtime_error
+/// Reads the only DICOM series in a folder, by ITK's own search for its files. @throws
+/// std::runtime_error
 [[nodiscard]] ItkImage readSeriesWithItk(const std::string& folder);
 
 }  // namespace palpate::vdb::test

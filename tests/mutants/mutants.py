@@ -21,9 +21,10 @@ from operators import applied, mutants_of
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 LEAST_SHARE = 0.9
-MOST_MEMORY = 6 << 30  # [bytes] of a test run; a mutant may ask for all there is
+MOST_MEMORY = 6 << 30  # [bytes] of a test run; a mutant may ask for any amount
 
-# Where a module's sources are, the executable, and the folders of tests that look at it, its own first.
+# For each module: its sources, the test executable, and the folders of tests that cover it, its own
+# first.
 MODULES = {
     "contact": ("lib/src/contact", "lib", ["contact", "render"]),
     "render": ("lib/src/render", "lib", ["render"]),
@@ -183,7 +184,7 @@ def stages_of(module, times, seconds):
                 batch, batch_time = [], 0.0
         if batch:
             stages.append((batch, batch_time))
-    # Of all folders the quickest first: most slips are seen at once.
+    # The quickest tests of all folders come first: most mutants are noticed at once.
     return sorted(stages, key=lambda stage: stage[1] / len(stage[0]))
 
 

@@ -107,7 +107,7 @@ Path(flags["gtest_output"][5:]).write_text(json.dumps({"testsuites": [{"name": "
 
             exe.write_text(script)
             self.assertEqual(times(), {"Cut.Quick": 0.5, "Cut.Slow": 50.0})
-            self.assertEqual(times(), {"Cut.Quick": 0.5, "Cut.Slow": 50.0})  # as it was: nothing runs
+            self.assertEqual(times(), {"Cut.Quick": 0.5, "Cut.Slow": 50.0})  # unchanged: nothing runs
             exe.write_text(script + "# another build")
             self.assertEqual(times(), {"Cut.Quick": 0.5})
             ran = (work / "ran.txt").read_text().splitlines()

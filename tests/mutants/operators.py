@@ -21,7 +21,7 @@ class CodeLine(NamedTuple):
     number: int  # from 1
     text: str  # as it stands
     code: str  # with comments, strings and characters blanked, of the same length
-    returns: str  # what the function around it returns, "" if that is not told by its head
+    returns: str  # return type of the function around it, "" if its head does not show it
 
 
 def blanked(text):
@@ -47,7 +47,7 @@ def returned_by(head):
 
 
 def code_lines(text):
-    """The lines within bodies of functions, without directives, assertions and what only declares."""
+    """The lines within bodies of functions, without directives, assertions and mere declarations."""
     raw = text.split("\n")
     code = blanked(text).split("\n")
     scopes = []  # (is the brace a function's or within one, what that function returns)
@@ -63,13 +63,14 @@ def code_lines(text):
         is_alias = re.match(r"(using|typedef|namespace|template|constexpr\s+const\s+char|friend)\b", statement_here)
         if inside and bare.strip() and not is_assert and not is_alias:
             out.append(CodeLine(number, line, bare, scopes[-1][1]))
-        body_from = None  # of a function that stands on one line
+        body_from = None  # set while inside a function that stands on one line
         for at, char in enumerate(bare + "\n"):
             if char == "{":
                 head = statement.strip()
                 is_named = re.match(r"(inline )?(namespace|struct|class|enum|union|extern)\b", head) is not None
                 within = bool(scopes) and scopes[-1][0]
-                # A body follows a parameter list; what follows = or a type is a list of values at file scope.
+                # A body follows a parameter list; braces after = or a type are a list of values at
+                # file scope.
                 is_body = not is_named and ("(" in head and "= " not in head.split("(")[0])
                 returns = scopes[-1][1] if within else returned_by(head)
                 scopes.append((within or is_body, returns if (within or is_body) else ""))
@@ -168,7 +169,7 @@ def functions(line):
 def steps(line):
     for match in re.finditer(r"\+\+|--", line.code):
         if re.match(r"\s*for \(", line.code):
-            continue  # would only hang or do nothing
+            continue  # such a mutant would only hang or change nothing
         yield "step", replaced(line, match.start(), match.end(), "--" if match.group() == "++" else "++")
 
 

@@ -1,4 +1,5 @@
-// An outside user of each component: what it gets must be linkable and mean what the headers say.
+// An outside user of each component: checks that installed functions can be linked and do what the
+// headers say.
 #include <palpate/core/error.h>
 #include <palpate/fields/primitives.h>
 #include <palpate/render/haptic_renderer.h>
@@ -27,7 +28,7 @@ void require(bool holds, const char* what) {
   if (!holds) std::exit(EXIT_FAILURE);
 }
 
-/// A map of the outside's own: the library calls it.
+/// A map implemented outside: the library calls it.
 class Even final : public palpate::MaterialMap {
  public:
   [[nodiscard]] Sample sample(const palpate::Vec3& p) const noexcept override {
@@ -97,7 +98,7 @@ int main() {
 #ifdef WITH_vdb
   const palpate::vdb::LevelSet grid = palpate::vdb::bake(*ball, {.voxel_size = 0.0005});
   const palpate::FieldPtr baked = palpate::vdb::gridField(grid);
-  // Trilinear in a sphere of 40 voxels: h^2 / R = 1.3e-5 m at the very worst.
+  // Trilinear in a sphere of 40 voxels: the error is at most h^2 / R = 1.3e-5 m.
   require(std::abs(baked->sample(above).value - 0.001) < 1.3e-5, "vdb: the ball as a grid");
 #endif
 }

@@ -1,7 +1,7 @@
 # cmake -D SOURCE=... -D BINARY=... -D CONFIG=... -D SCRATCH=... -D COMPONENTS=... [-D SHARED=ON -D LAUNCHER=...] -P package_test.cmake
-# Installs the build BINARY below SCRATCH, moves what was installed (a package must not know where it was
-# put), and builds and runs an outside project against it. With SHARED, core and devices are built as shared
-# libraries in BINARY first.
+# Installs the build BINARY below SCRATCH, moves the installation (a package must not depend on
+# where it was put), and builds and runs an outside project against it. With SHARED, core and
+# devices are first built as shared libraries in BINARY.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -18,7 +18,7 @@ endif()
 run(${CMAKE_COMMAND} --install "${BINARY}" --config "${CONFIG}" --prefix "${SCRATCH}/first")
 file(RENAME "${SCRATCH}/first" "${SCRATCH}/installed")
 
-# The face, and nothing else.
+# The public headers, and nothing else.
 file(GLOB_RECURSE installed RELATIVE "${SCRATCH}/installed/include" "${SCRATCH}/installed/include/*")
 list(LENGTH installed count)
 message(STATUS "${count} headers were installed")
@@ -29,7 +29,8 @@ foreach(header IN LISTS installed)
   endif()
 endforeach()
 
-# What comes with it: license, history, scenes beside the schema that they name, and what the command brings.
+# The files that come with them: license, history, scenes beside the schema that they name, and the
+# files of the command.
 set(promised share/doc/palpate/LICENSE share/doc/palpate/CHANGELOG.md share/palpate/scenes/container.yaml
   share/palpate/scenes/contrast.nrrd share/palpate/schema/scene-1.json)
 if(EXISTS "${SCRATCH}/installed/bin/palpate")
@@ -51,7 +52,7 @@ if(EXISTS "${SCRATCH}/installed/bin/palpate")
     --press 0,0,0 --quiet)
 endif()
 
-# A shared library shows its face only.
+# A shared library exports its public interface only.
 file(GLOB_RECURSE shared "${SCRATCH}/installed/libpalpate_core.so")
 if(shared)
   execute_process(COMMAND nm --dynamic --defined-only --demangle "${shared}"

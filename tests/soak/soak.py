@@ -29,8 +29,9 @@ import numpy
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCENE = ROOT / "data/scenes/head.yaml"
 RATE = 1000  # [Hz]
-# Corners of the way: when the hand is there [s], how far along the needle's way and how far aside of it [m]. To the
-# thalamus and back, then aside of the opening in the dura and back against it from inside.
+# Corners of the path: when the hand is there [s], how far along the needle's direction, and how far
+# beside it [m]. To the thalamus and back, then beside the opening in the dura and back against it
+# from inside.
 BEGIN = numpy.array([-0.100, -0.042, 0.060])
 END = numpy.array([-0.012, -0.018, 0.008])
 ALONG = (END - BEGIN) / numpy.linalg.norm(END - BEGIN)
@@ -83,7 +84,7 @@ class Bakes:
             if self.process.returncode != 0:
                 sys.exit("a bake failed: " + " ".join(self.command))
             self.done += 1
-        # Nothing is taken from the cache, so that each bake is work.
+        # No grid is taken from the cache, so that each bake is real work.
         self.process = subprocess.Popen(self.command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                         env={**os.environ, "PALPATE_CACHE": ""})
 
@@ -151,7 +152,7 @@ def main():
         if not (numpy.diff(rows["tick"]) == 1).all() or rows["tick"][0] != 0:
             failures.append("ticks are missing in the record")
 
-        # All that is there for the whole run is there after a tenth of it.
+        # All memory that is needed for the whole run is allocated after a tenth of it.
         settled = [each for each in samples if each[0] > 0.1 * options.seconds]
         growth = max(m for _, m in settled) - settled[0][1]
         permitted = SMALLEST_BLOCK / 2 * RATE * (settled[-1][0] - settled[0][0])

@@ -38,8 +38,8 @@ inline void note(std::int64_t AllocGuard::Counts::*what) noexcept {
   if (armed > 0) noteViolation(what);
 }
 
-/// The next definition of a function after the test executable's own. Looked up when first called,
-/// which may be before any constructor of this file has run.
+/// The definition of a function behind the test executable's own. Looked up at the first call,
+/// which may happen before any constructor of this file has run.
 template <typename Function>
 class Next {
  public:
@@ -102,7 +102,7 @@ void onFree(const volatile void* block) {
 
 extern "C" {
 
-// The C library's own names for what is replaced here.
+// The C library's own names for the functions replaced here.
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);

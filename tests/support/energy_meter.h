@@ -1,5 +1,5 @@
 #pragma once
-// How much work a rendered world does on the hand.
+// Measures the work that a rendered world does on the hand.
 
 #include <algorithm>
 #include <span>
@@ -10,8 +10,8 @@ namespace palpate::testing {
 
 /// Adds up F . v dt over ticks: force k, written at tick k, is held until tick k + 1 (as a real
 /// device's output stage holds it), so its work on the hand is F_k . (x_{k+1} - x_k). A passive
-/// world that began at rest never gives more than it was given: gained() stays at or below what the
-/// sampling itself leaks.
+/// world that began at rest never gives back more than it was given: gained() does not exceed the
+/// energy that sampling itself creates.
 class EnergyMeter {
  public:
   /// Next tick: the hand is at `position` [m], and `force` [N] is put on it until the tick after.
@@ -25,7 +25,7 @@ class EnergyMeter {
     rebound_ = std::max(rebound_, work_ - lowest_);
   }
 
-  /// Of a whole trace. The last row's force does no work: nothing follows it.
+  /// The work over a whole trace. The last row's force does no work, because no motion follows it.
   [[nodiscard]] static EnergyMeter of(std::span<const TraceRow> rows) noexcept {
     EnergyMeter meter;
     for (const TraceRow& row : rows) meter.add(row.hip, row.result.force);
@@ -34,7 +34,7 @@ class EnergyMeter {
 
   [[nodiscard]] double work() const noexcept { return work_; }      ///< [J] on the hand, so far
   [[nodiscard]] double gained() const noexcept { return gained_; }  ///< [J] highest work() so far
-  /// [J] most ever given back after having been taken: for lossless walls equal to what was stored.
+  /// [J] most energy given back after it was taken: for lossless walls equal to the stored energy.
   [[nodiscard]] double rebound() const noexcept { return rebound_; }
 
  private:

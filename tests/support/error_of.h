@@ -1,5 +1,5 @@
 #pragma once
-/// What a piece of work is refused with.
+/// Catches the error with which a piece of work is refused.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 
 namespace palpate {
 
-/// Runs `work` and returns the Error that it throws; an empty one, and a failure, if it does not.
+/// Runs `work` and returns the Error that it throws; if it throws none, an empty one, and the test
+/// fails.
 template <typename Work>
 Error errorOf(Work&& work) {
   try {

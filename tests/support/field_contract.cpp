@@ -144,10 +144,10 @@ bool insideOf(const FieldCase& field_case, const Field& field, const Vec3& p) {
   return field_case.inside ? field_case.inside(p) : field.value(p) < 0.0;
 }
 
-/// Smallest distance found from `p` to a point on the other side, by shooting in all directions and
-/// then ever closer around the best shot: a bound from above that converges to the distance. The
-/// gradient only hints where to shoot first, and how far (`claimed`, and a little more:
-/// `expected`). `others` are some points of the other side.
+/// Smallest distance found from `p` to a point on the other side, by shooting rays in all
+/// directions and then ever closer around the best one: an upper bound that converges to the
+/// distance. The gradient only suggests where to shoot first, and how far (`claimed`, and a little
+/// more: `expected`). `others` are some points of the other side.
 double shootAtBorder(const FieldCase& field_case, const Field& field, const Vec3& p,
                      const std::vector<Vec3>& others, double claimed, double expected, double reach,
                      Random& random) {
@@ -167,14 +167,14 @@ double shootAtBorder(const FieldCase& field_case, const Field& field, const Vec3
     return true;
   };
   const auto shoot_shorter = [&](const Vec3& u) {
-    // A few lengths: a thin part may begin and end short of `best`.
+    // Several lengths, because a thin part may begin and end before `best`.
     static_cast<void>(shoot(u, best * (1.0 - 1e-9)) || shoot(u, best * 0.97) ||
                       shoot(u, best * 0.8));
   };
   const FieldSample s = field.sample(p);
   const Vec3 hint = unitOr(here ? s.gradient : -s.gradient, Vec3(1.0, 0.0, 0.0));
   shoot(hint, expected);  // so that even a plate is not overshot
-  // A shot at a tip leaves it again: aim a little beside, towards points of the other side.
+  // A ray at a tip passes through it: aim a little beside it, towards points of the other side.
   const Vec3 tip = p + hint * claimed;
   for (const Vec3& other : others) {
     const Vec3 aim = tip + unitOr(other - tip, Vec3(0.0)) * (expected - claimed) - p;
@@ -209,7 +209,7 @@ AssertionResult checkGradient(const FieldCase& field_case) {
       continue;
     }
     const auto is_off = [&] {
-      // What the differences themselves are off by: rounding of the value over the step, and the
+      // Error of the differences themselves: rounding of the value divided by the step, and the
       // square of step times curvature, which is the jump.
       const double noise =
           8.0 * kEpsilon * (std::fabs(s.value) + glm::length(p) * field->lipschitz()) / step;
@@ -270,7 +270,7 @@ AssertionResult checkBounds(const FieldCase& field_case) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double face : {bounds.lo[axis], bounds.hi[axis]}) {
       if (!std::isfinite(face) || window.isEmpty()) continue;
-      // The lowest point of the plane just beyond the face, from the best of many.
+      // The lowest value on the plane just beyond the face, refined from the best of many points.
       const double beyond = 1e-6 * diagonal(field_case);
       const double plane = face == bounds.lo[axis] ? face - beyond : face + beyond;
       const auto on_plane = [&](Vec3 p) {
@@ -309,7 +309,7 @@ AssertionResult checkLipschitz(const FieldCase& field_case) {
   const double size = glm::length(domain.size());
   const auto rise = [&](const Vec3& a, const Vec3& b) {
     const double apart = glm::length(b - a);
-    // Below this rounding of the values decides.
+    // For a smaller distance, rounding of the values decides.
     if (!(apart > 1e-7 * size)) return 0.0;
     return std::fabs(field->value(b) - field->value(a)) / apart;
   };
@@ -326,7 +326,7 @@ AssertionResult checkLipschitz(const FieldCase& field_case) {
             ? random.in(domain)
             : clamped(a + random.direction() * (size * std::pow(10.0, random.uniform(-5.0, -1.0))));
     steepest.push_back({a, b, rise(a, b)});
-    // Along the gradient, where a short pair is steepest.
+    // Along the gradient, where a short pair has the steepest slope.
     const FieldSample s = field->sample(a);
     const Vec3 c = clamped(a + unitOr(s.gradient, Vec3(1.0, 0.0, 0.0)) * (1e-5 * size));
     steepest.push_back({a, c, rise(a, c)});
@@ -334,7 +334,7 @@ AssertionResult checkLipschitz(const FieldCase& field_case) {
   std::sort(steepest.begin(), steepest.end(),
             [](const Pair& x, const Pair& y) { return x.rise > y.rise; });
   steepest.resize(12);
-  for (Pair& pair : steepest) {  // uphill from the best
+  for (Pair& pair : steepest) {  // uphill from the best one
     double spread = 0.2 * size;
     for (int i = 0; i < 300; ++i) {
       const Vec3 shift = random.direction() * spread;
@@ -416,7 +416,7 @@ AssertionResult checkJet(const FieldCase& field_case) {
     const double error = largestEntry(jet.hessian - stencil.bend);
     const double natural = field->lipschitz() / field->featureSize();
     // Relative to the curvature itself where that is larger, as it is inside a tight hollow; the
-    // differences of a tightly curved field are off by (step * curvature)^2 of it.
+    // differences of a strongly curved field have a relative error of (step * curvature)^2.
     const double scale = std::max(natural, largestEntry(jet.hessian));
     const double noise = 16.0 * kEpsilon * field->lipschitz() / step;
     if (!(error <= field_case.hessian_tolerance * scale + noise)) {
@@ -447,7 +447,7 @@ AssertionResult checkValue(const FieldCase& field_case) {
 AssertionResult checkValues(const FieldCase& field_case) {
   const FieldPtr field = field_case.make();
   std::vector<Vec3> points = pointsFor(field_case, *field);
-  // Few that a loop over a batch is not made for, among many that it is.
+  // A few points that a batch loop is not designed for, among many that it is.
   std::vector<Vec3> strange = awkwardPoints(field_case, *field);
   strange.insert(strange.end(), {Vec3(kInfinity), Vec3(std::nan(""), 0.0, 0.0),
                                  Vec3(0.0, std::nan(""), 0.0), Vec3(0.0, 0.0, std::nan(""))});
@@ -469,7 +469,7 @@ AssertionResult checkValues(const FieldCase& field_case) {
     field->values(batch, values);
     for (std::size_t n = 0; n < PointBatch::kCount; ++n) {
       const double value = field->value(batch[n]);
-      // One NaN is as good as another.
+      // Any two NaN count as equal.
       if (std::isnan(value) && std::isnan(values[n])) continue;
       if (std::bit_cast<std::uint64_t>(value) != std::bit_cast<std::uint64_t>(values[n])) {
         return AssertionFailure() << std::setprecision(17) << "at " << text(batch[n]) << " (" << n
@@ -507,7 +507,7 @@ AssertionResult checkAwkward(const FieldCase& field_case) {
     if (!s.in_band && slope != 0.0) {
       return AssertionFailure() << "at " << text(p) << " outside the band, yet with a gradient";
     }
-    // Zero and minus zero are one point.
+    // Zero and minus zero are the same point.
     const FieldSample again = field->sample(p + Vec3(0.0));
     if (again.value != s.value || again.gradient != s.gradient) {
       return AssertionFailure() << "at " << text(p) << " the sign of a zero matters";
@@ -552,7 +552,7 @@ AssertionResult checkConstants(const FieldCase& field_case) {
   return AssertionSuccess();
 }
 
-// Every module's tests are linked with this file; most join no field.
+// Every module's tests are linked with this file, but most add no field.
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(FieldContract);
 
 TEST_P(FieldContract, GradientIsThatOfTheValue) { EXPECT_TRUE(checkGradient(GetParam())); }

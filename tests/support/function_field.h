@@ -1,5 +1,5 @@
 #pragma once
-// A field made of a value alone.
+// A field made from a value function alone.
 
 #include <functional>
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace palpate::testing {
 
-/// For tests that must not depend on lib's own shapes. Its gradient is zero, a lie that only code
-/// which claims to use nothing but values may be shown.
+/// For tests that must not depend on lib's own shapes. Its gradient is zero, which is wrong; use it
+/// only for code that claims to need nothing but values.
 class FunctionField final : public Field {
  public:
   using Function = std::function<double(const Vec3&)>;

@@ -5,8 +5,8 @@
 
 namespace palpate::testing {
 
-/// The polynomial (x / a)^2 + (y / b)^2 + (z / c)^2 - 1 about `center`. The distance to its surface
-/// is that of ellipsoid(), found in another way.
+/// The polynomial (x / a)^2 + (y / b)^2 + (z / c)^2 - 1 about `center`. ellipsoid() gives the
+/// distance to the same surface, by another method.
 [[nodiscard]] inline FieldPtr implicitEllipsoid(const Vec3& center, const Vec3& radii) {
   QuadricCoefficients c;
   c.xx = 1.0 / (radii.x * radii.x);

@@ -1,5 +1,5 @@
 #pragma once
-// The nearest point of a polyhedron, exactly: plane after plane, after Seidel (1991).
+// The nearest point of a polyhedron, exact: one plane after another, after Seidel (1991).
 
 #include <array>
 #include <cmath>
@@ -12,12 +12,13 @@ namespace palpate::testing {
 /// Allowed: normal . p + gap >= 0; the normal is a unit vector.
 struct HalfSpaceBound {
   Vec3 normal{0.0, 0.0, 1.0};
-  double gap = 0.0;  ///< [m] of p = 0
+  double gap = 0.0;  ///< [m] value at p = 0
 };
 
 struct NearestOfPlanes {
   Vec3 point{0.0, 0.0, 0.0};
-  std::array<int, 3> active{};  ///< the planes that it lies on, the first `active_count`
+  /// The planes on which it lies; the first `active_count` entries count
+  std::array<int, 3> active{};
   int active_count = 0;
   bool is_allowed = true;  ///< false: the planes leave no room, or rounding let one be violated
 };
@@ -65,7 +66,7 @@ class PlaneProblem {
     return best;
   }
 
-  /// The point of a line nearest to `foot`, which is the goal's own foot on it.
+  /// The allowed point of a line nearest to `foot`, which is the foot of the goal on this line.
   [[nodiscard]] NearestOfPlanes onLine(int i, int j, const Vec3& foot, const Vec3& way) const {
     double low = -kInfinity;
     double high = kInfinity;

@@ -1,6 +1,6 @@
 #pragma once
-// A hand that stays about the proxy, at 0.1 m/s and 1 kHz: it wanders, presses, and now and then
-// stands still.
+// A hand that stays near the proxy, at 0.1 m/s and 1 kHz: it wanders, presses, and from time to
+// time stands still.
 
 #include <algorithm>
 #include <functional>
@@ -20,26 +20,26 @@ class RandomHand {
   RandomHand(std::uint64_t seed, const Vec3& start)
       : random_(seed * 2 + 1), at_(start), heading_(random_.direction()) {}
 
-  /// The next position, from where the proxy is now; `tree` is where it may be.
+  /// The next position, given the proxy's present one; `tree` describes where the proxy may be.
   Vec3 next(const Vec3& proxy, const testing::RegionTree& tree) {
     if (--left_ <= 0) choose(tree);
     if (kind_ == Kind::kFrozen) return at_;
     if (kind_ == Kind::kPress) {
-      // Deep in one direction for long: the proxy slides to where walls meet.
+      // Presses in one direction for long: the proxy slides to a place where walls meet.
       const Vec3 way = proxy + depth_ * push_ - at_;
       heading_ = unitOr(unitOr(way, push_) + 0.02 * random_.direction(), push_);
       at_ += std::min(kStep, glm::length(way)) * heading_;
       return at_;
     }
     if (tree.value(at_) > 0.0) {
-      // Free: to the nearest wall, or there is nothing to judge.
+      // In free space: moves to the nearest wall, because otherwise there is nothing to judge.
       heading_ = unitOr(heading_ + 0.5 * downhill(tree), heading_);
     }
     heading_ = glm::normalize(heading_ + 0.3 * random_.direction());
     const Vec3 out = at_ - proxy;
     const double away = glm::length(out);
     if (away > 0.0 && glm::length(at_ + kStep * heading_ - proxy) > kReach) {
-      // Along the ball about the proxy, or back in.
+      // Along the sphere about the proxy, or back inside it.
       const Vec3 inward = -out / away;
       const Vec3 along = heading_ - std::min(glm::dot(heading_, inward), 0.0) * inward;
       heading_ = glm::normalize(along + 0.2 * inward + 0.1 * random_.direction());
@@ -50,7 +50,7 @@ class RandomHand {
 
   [[nodiscard]] const Vec3& position() const { return at_; }
   [[nodiscard]] bool isFrozen() const { return kind_ == Kind::kFrozen; }
-  /// Ticks that it still stands still, this one included.
+  /// Number of ticks for which it still stands still, this one included.
   [[nodiscard]] int frozenTicksLeft() const { return isFrozen() ? left_ : 0; }
 
  private:
@@ -63,8 +63,8 @@ class RandomHand {
       left_ = static_cast<int>(random_.uniform(10, 60));
     } else if (which < 0.8) {
       kind_ = Kind::kPress;
-      // On along what is pressed, which slides into corners; now and then straight into the nearest
-      // wall.
+      // Continue along the pressed wall, which slides into corners; from time to time straight into
+      // the nearest wall.
       const Vec3 ahead = random_.uniform(0.0, 1.0) < 0.7 ? heading_ : downhill(tree);
       push_ = unitOr(ahead + random_.direction(), heading_);
       depth_ = random_.uniform(0.3, 1.0) * kReach;
@@ -95,7 +95,7 @@ class RandomHand {
   int left_ = 60;
 };
 
-/// A point of the start region with some room about it; nothing if none of 4000 tried is.
+/// A point of the start region with some free space around it; nothing if 4000 tries find none.
 inline std::optional<Vec3> roomyPoint(const testing::RegionTree& tree, std::uint64_t seed,
                                       double extent = 0.025, double room = 3e-4) {
   Random random(seed * 2);

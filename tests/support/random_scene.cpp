@@ -12,7 +12,7 @@
 namespace palpate::test {
 namespace {
 
-/// Writes fields as they stand in a scene file, lengths in mm.
+/// Writes fields in the syntax of scene files, lengths in mm.
 class FieldWriter {
  public:
   FieldWriter(Random& random, const RandomSceneOptions& options)
@@ -45,7 +45,7 @@ class FieldWriter {
     return joined({"{sphere: {center: ", point(spread), ", radius: ", length(least, most), "}}"});
   }
 
-  /// Somewhere within the middle of the scene.
+  /// A primitive somewhere in the middle of the scene.
   std::string primitive() {
     const auto kind = static_cast<int>(random_.uniform(0.0, 11.0));
     switch (kind) {
@@ -74,7 +74,7 @@ class FieldWriter {
   }
 
  private:
-  /// Without edges.
+  /// A primitive without edges.
   std::string smoothPrimitive() {
     switch (static_cast<int>(random_.uniform(0.0, 5.0))) {
       case 0:
@@ -102,7 +102,8 @@ class FieldWriter {
                    "], radius: ", length(1, 5), "}}"});
   }
 
-  /// Two or three; one of them has `levels` - 1 levels. All but the first are changed by `change`.
+  /// Two or three operands; one of them has `levels` - 1 levels. All but the first are modified by
+  /// `change`.
   std::string operands(int levels, const std::function<std::string(const std::string&)>& change) {
     const int count = random_.uniform(0.0, 1.0) < 0.6 ? 2 : 3;
     const auto deep = static_cast<int>(random_.uniform(0.0, count));
@@ -123,7 +124,8 @@ class FieldWriter {
                    turningAxis(), ", degrees: ", number(random_.uniform(-180, 180)), "}}}"});
   }
 
-  /// Braces are evaluated from left to right, operands of + in any order.
+  /// Takes a braced list, because braces are evaluated from left to right, while operands of + may
+  /// be evaluated in any order.
   static std::string joined(std::initializer_list<std::string> parts) {
     std::string out;
     for (const std::string& part : parts) out += part;
@@ -144,9 +146,10 @@ class FieldWriter {
            "]";
   }
   std::string point(double spread) { return triple(random_.in({Vec3(-spread), Vec3(spread)})); }
-  /// A third of them along an axis of the scene: what is exactly parallel is a case of its own.
+  /// A third of them is along an axis of the scene: exactly parallel directions are a special case.
   std::string direction() { return triple(someDirection()); }
-  /// In a mirror a turn about an axis goes about the mirrored axis the other way.
+  /// In a mirror image, a rotation about an axis becomes the opposite rotation about the mirrored
+  /// axis.
   std::string turningAxis() {
     const Vec3 axis = someDirection();
     return triple(options_.mirrored ? -axis : axis);
@@ -187,7 +190,7 @@ FieldPtr RandomScene::solid() const {
 }
 
 RandomScene randomScene(std::uint64_t number, const RandomSceneOptions& options) {
-  // Neighboring numbers would give engines in related states.
+  // Without mixing, neighboring numbers would give engines in related states.
   Random random(number * 0x9E3779B97F4A7C15ULL + 0x632BE59BD9B4E019ULL);
   FieldWriter write(random, options);
   RandomScene out;
@@ -201,7 +204,7 @@ RandomScene randomScene(std::uint64_t number, const RandomSceneOptions& options)
   } else if (kind < 0.12) {  // labels of one image
     out.is_label_group = true;
     for (int i = 0; i < 3; ++i) layers.push_back(write.ball(8, 14, 8.0));
-  } else if (kind < 0.24) {  // several layers, which lap
+  } else if (kind < 0.24) {  // several layers that overlap
     out.depth = std::min(out.depth, 3);
     layers.push_back(write.expression(out.depth));
     layers.push_back(write.expression(out.depth - 1));

@@ -1,5 +1,6 @@
 #pragma once
-/// Random scenes of constructive solid geometry, each reproducible from its number, as scene files.
+/// Random scenes of constructive solid geometry, as scene files; each is reproducible from its
+/// number.
 
 #include <cstdint>
 #include <string>
@@ -9,14 +10,14 @@
 
 namespace palpate::test {
 
-/// What a random scene is made of.
+/// The parameters of a random scene.
 struct RandomSceneOptions {
   int deepest = 5;                ///< 1 to 8: levels of operations above the primitives
   bool black_box_creases = true;  ///< blends may have operands with edges of their own
   double shell = 0.0;             ///< [mm] more than 0: the whole is a shell of this thickness
-  // The same scene elsewhere. Numbers in the file are as printed before it is moved.
+  // The same scene at another place. The numbers in the file are those printed before it is moved.
   bool mirrored = false;    ///< x becomes -x
-  std::string unit = "mm";  ///< what its numbers are in
+  std::string unit = "mm";  ///< unit of its numbers
   std::string placed = {};  ///< inside of `transform`, beside `field`; empty: not moved
 };
 
@@ -25,12 +26,12 @@ struct RandomScene {
   std::uint64_t number = 0;
   int depth = 0;  ///< levels of operations
   bool is_label_group =
-      false;  ///< the layers share one label image; a scene file without image cannot say so
+      false;  ///< the layers share one label image, which a scene file without an image cannot say
   std::string
-      core;  ///< of a scene of one layer: its field as in the file, before it became a shell
+      core;  ///< for a scene of one layer: its field as in the file, before it became a shell
   std::string yaml;  ///< for `palpate touch`; lengths in mm, all within 40 mm or so
 
-  /// With the label group, where it is one.
+  /// The description, with the label group if there is one.
   [[nodiscard]] SceneDescription description() const;
   [[nodiscard]] ScenePtr compiled() const { return compile(description()); }
   /// The field of `core`.
@@ -38,7 +39,7 @@ struct RandomScene {
 };
 
 /// The same number and options give the same scene, on every platform. It may turn out empty, or
-/// full: then its start region has no point.
+/// fill all space: then its start region has no point.
 [[nodiscard]] RandomScene randomScene(std::uint64_t number, const RandomSceneOptions& options = {});
 
 }  // namespace palpate::test

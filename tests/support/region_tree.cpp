@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostLiterals = 32;
 constexpr std::size_t kMostCells = 64;
 
-/// Drops what is implied: a conjunction that asks all that another one asks, and more.
+/// Drops implied conjunctions: those that contain all conditions of another one, and more.
 void absorb(std::vector<std::uint32_t>& cells) {
   std::vector<std::uint32_t> kept;
   for (const std::uint32_t cell : cells) {
@@ -71,8 +71,8 @@ bool RegionTree::leaveNoRoom(const std::array<int, 3>& literals, const Vec3& cen
       sum += value;
       size += std::fabs(value);
     }
-    // Far above rounding (1e-12 of the reach), far below what bends do to surfaces that only touch
-    // (1e-4).
+    // Far above rounding (1e-12 of the reach), far below the effect of curvature on surfaces that
+    // only touch (1e-4).
     if (std::fabs(sum) > 1e-8 * size) known->second = false;
   }
   return known->second;
@@ -121,7 +121,7 @@ int RegionTree::addField(const FieldPtr& field, double sign, const Pose& pose, b
     case Structure::kUnion:
     case Structure::kIntersection:
     case Structure::kFaces:
-      // Outside a union is outside all its operands; inside it, inside any.
+      // Outside a union means outside all its operands; inside it means inside any of them.
       node.kind = (structure.kind == Structure::kUnion) == (sign > 0.0) ? Kind::kAll : Kind::kAny;
       for (const FieldPtr& operand : structure.operands) {
         node.operands.push_back(addField(operand, sign, pose, is_moved));
@@ -146,8 +146,8 @@ Slope RegionTree::slopeAt(const Literal& literal, const Vec3& p, double widest) 
   Slope best;
   best.gap = literal.value(p);
   best.doubt = kInfinity;
-  // Order 4 over h, order 2 over h / 4; both near 1e-9 on a smooth surface. A seam or an apex
-  // within reach shows in their difference, and asks for a smaller h.
+  // Differences of order 4 over h, and of order 2 over h / 4; both have errors near 1e-9 on a
+  // smooth surface. A seam or an apex within reach makes them differ, and calls for a smaller h.
   for (double h = std::min(1e-3 * literal.feature, widest); best.doubt > 1e-8 && h > 5e-10;
        h *= 0.1) {
     Vec3 fine(0.0);
@@ -169,7 +169,7 @@ Slope RegionTree::slopeAt(const Literal& literal, const Vec3& p, double widest) 
     best.steepness = steepness;
   }
   best.gap /= best.steepness;
-  // Neither difference is that much off where they agree to the rounding of the shorter one.
+  // If the two agree to the rounding of the shorter one, neither has an error that large.
   if (best.doubt < 3e-7) best.doubt = 1e-9;
   return best;
 }
@@ -185,7 +185,7 @@ bool RegionTree::isOnCrease(const Literal& literal, const Vec3& p,
     step[i] = h;
     turn += std::fabs(literal.value(p + step) + literal.value(p - step) - 2.0 * center);
   }
-  // What is smooth bends by some millionths over that.
+  // Over that distance the normal of a smooth surface turns by only some millionths.
   return turn > 0.02 * slope.steepness * h;
 }
 

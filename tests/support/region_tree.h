@@ -1,6 +1,6 @@
 #pragma once
-// Where a proxy of a scene may be, asked of values of fields alone: nothing of lib's contact or
-// rendering.
+// The set where a proxy of a scene may be, computed from values of fields alone, without any of
+// lib's contact or rendering code.
 
 #include <array>
 #include <cstdint>
@@ -25,43 +25,44 @@ struct Literal {
   }
 };
 
-/// A literal at one point, by differences of its values.
+/// A literal at one point, linearized by differences of its values.
 struct Slope {
-  Vec3 normal{0.0, 0.0, 1.0};  ///< unit, to where it is allowed
-  double steepness = 1.0;      ///< [-] of the value along it
+  Vec3 normal{0.0, 0.0, 1.0};  ///< unit, towards the allowed side
+  double steepness = 1.0;      ///< [-] slope of the value along it
   double gap = 0.0;            ///< [m] value / steepness
-  double doubt = 0.0;  ///< [-] by how much the normal may be off; above kSingular there is none
+  double doubt = 0.0;  ///< [-] error bound of the normal; above kSingular there is no normal
   static constexpr double kSingular = 1e-3;
 };
 
-/// What decides within a ball: the border is a tree of AND and OR over the literals that come into
-/// it.
+/// The conditions that decide within a ball: its border is a tree of AND and OR over the literals
+/// that can change there.
 struct Nearby {
-  std::vector<int> literals;  ///< that can change their sign in the ball; at most 32
-  std::vector<std::uint32_t>
-      cells;                 ///< conjunctions, a bit for each of `literals`; any of them allows
-  bool is_too_much = false;  ///< more literals or cells than it can list
+  std::vector<int> literals;         ///< those that can change their sign in the ball; at most 32
+  std::vector<std::uint32_t> cells;  ///< conjunctions, as a bit for each of `literals`; a point is
+                                     ///< allowed if any of them holds
+  bool is_too_much = false;          ///< there are more literals or cells than it can hold
 };
 
 class RegionTree {
  public:
-  /// What a proxy in `region` must not leave: its own layer, and no later layer may hold it. Walls
-  /// only: no ports, no sheets, no absent walls.
+  /// The set for a proxy in `region`: inside its own layer, and outside all later layers. Considers
+  /// walls only: no ports, no sheets, no absent walls.
   RegionTree(const Scene& scene, RegionId region);
 
-  /// At least 0 where allowed [m], by the layers' own values; at most the distance to the border,
-  /// for exact and bound fields.
+  /// [m] Not negative where allowed, computed from the layers' own values; for exact and bound
+  /// fields, at most the distance to the border.
   [[nodiscard]] double value(const Vec3& p) const noexcept;
 
   [[nodiscard]] const std::vector<Literal>& literals() const noexcept { return literals_; }
-  /// By differences over `widest` [m] at most.
+  /// Computed by differences over at most `widest` [m].
   [[nodiscard]] Slope slopeAt(const Literal& literal, const Vec3& p,
                               double widest = kInfinity) const noexcept;
-  /// Whether `slope`, of the literal at `p`, is the mean of those on both sides of a crease:
-  /// differences across it agree in that, which is less steep than either.
+  /// Whether `slope`, that of the literal at `p`, is the mean of the slopes on both sides of a
+  /// crease: differences across the crease all give this mean, which is less steep than either
+  /// side.
   [[nodiscard]] bool isOnCrease(const Literal& literal, const Vec3& p,
                                 const Slope& slope) const noexcept;
-  /// Of value / steepness.
+  /// Hessian of value / steepness.
   [[nodiscard]] Mat3 hessianAt(const Literal& literal, const Vec3& p,
                                double steepness) const noexcept;
 
@@ -69,8 +70,8 @@ class RegionTree {
   void nearby(const Vec3& center, double radius, Nearby& out) const;
 
   [[nodiscard]] double feature() const noexcept { return feature_; }  ///< [m] the smallest
-  /// [m] Being on a surface means within a billionth of its leaf's feature size; the largest of
-  /// those.
+  /// [m] A point counts as on a surface within a billionth of the leaf's feature size; this is the
+  /// largest of these tolerances.
   [[nodiscard]] double onSurface() const noexcept { return 1e-9 * largest_feature_; }
   [[nodiscard]] std::size_t nodeCount() const noexcept { return nodes_.size(); }
 
@@ -83,8 +84,8 @@ class RegionTree {
   };
   enum class State : std::uint8_t { kAllowed, kForbidden, kOpen };
 
-  /// Whether literals that come near `center` ask for a surface or a line together, not for a place
-  /// to be: their values sum to 0 all around. Labels that touch have such pairs and triples.
+  /// Whether literals near `center` together allow only a surface or a line, not a region with
+  /// volume: their values sum to 0 all around. Labels that touch give such pairs and triples.
   [[nodiscard]] bool leaveNoRoom(const std::array<int, 3>& literals, const Vec3& center) const;
   /// Drops the cells that hold such literals.
   void dropEmpty(const Vec3& center, Nearby& out) const;
@@ -98,15 +99,15 @@ class RegionTree {
   };
   std::vector<Layer> layers_;
   std::vector<Literal> literals_;
-  bool has_both_sides_ = false;  ///< some field is asked for on either side of it
+  bool has_both_sides_ = false;  ///< both sides of some field occur
   mutable std::map<std::array<int, 3>, bool>
-      leaves_no_room_;  ///< pairs have their second literal twice
+      leaves_no_room_;  ///< each pair is stored with its second literal twice
   std::vector<Node> nodes_;
   int root_ = 0;
   double feature_ = kInfinity;
   double largest_feature_ = 0.0;
   mutable std::vector<int>
-      state_;  ///< by literal: 1 allowed, -1 forbidden, else 2 + its place nearby
+      state_;  ///< for each literal: 1 allowed, -1 forbidden, else 2 + its index in Nearby
 };
 
 }  // namespace palpate::testing

@@ -39,7 +39,7 @@ std::string causeOf(const Verdict& verdict) {
 }
 
 bool RestJudge::isDirect(const Vec3& from, const Vec3& to, double moved) const {
-  // The chord of a bulging wall dips by at most moved^2 / (8 R).
+  // The chord of a convex wall goes below the wall by at most moved^2 / (8 R).
   const double dip = moved * moved / (8.0 * tree_.feature()) + 4.0 * tree_.onSurface();
   constexpr int kLooks = 12;
   for (int i = 1; i < kLooks; ++i) {
@@ -63,7 +63,7 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   if (inside > 2.0 * on_surface) return is_at_fault(Fault::kInside, inside);
   const Vec3 way = now.proxy - hip;
   const double depth = glm::length(way);
-  // Rounding of positions, times the stiffness.
+  // Rounding of positions, multiplied by the stiffness.
   const double least = stiffness_ * (1e-15 * glm::length(hip) + 1e-17);
   const double force_off = glm::length(now.force - stiffness_ * way);
   if (depth > atHand()) {
@@ -83,8 +83,8 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   const double moved = glm::length(now.proxy - before.proxy);
   bool is_suspect = !isDirect(before.proxy, now.proxy, moved);
   bool& is_minimum = out.is_minimum;
-  bool is_rest = false;    // by the walls' normals
-  bool is_pinned = false;  // by them and by values
+  bool is_rest = false;    // judged by the walls' normals
+  bool is_pinned = false;  // judged by them and by values
   if (out.is_contact) {
     is_suspect |= moved > 4.0 * glm::length(hip - previous_hip) + 1e-3 * depth;
     const RestCheck checked = oracle_.check(now.proxy, hip);
@@ -93,16 +93,16 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
     out.has_kink = checked.has_kink;
     is_rest = checked.residual <= (3e-8 + checked.doubt) * depth + 1e-15;
     if (!is_rest && checked.has_kink && checked.residual <= 10.0 * kTolerance * depth) {
-      // The normals about a crease are those of places beside it: Newton's step says how far off
-      // the minimum is, and values that it is one.
+      // The normals about a crease come from places beside it. Newton's step tells how far off the
+      // minimum is, and values confirm that it is one.
       is_pinned = checked.residual <= kTolerance * depth * oracle_.leastCurvature(now.proxy, hip) &&
                   oracle_.gainNear(now.proxy, hip, 1e-4 * depth) == 0.0;
       is_rest = is_pinned;
     }
     is_minimum = is_rest;
     if (is_minimum && (sampled || is_suspect)) {
-      // By the tree alone: within a ten-thousandth of the depth nothing is nearer by more than a
-      // bulge allows.
+      // By the tree alone: within a ten-thousandth of the depth no allowed point is nearer by more
+      // than the bulge of a wall explains.
       is_minimum = oracle_.gainNear(now.proxy, hip, 1e-4 * depth) <= 0.02 &&
                    oracle_.leastCurvature(now.proxy, hip) >= -1e-4;
     }
@@ -110,7 +110,7 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
   }
   if (!is_suspect) return out;
   out.ran_oracle = true;
-  // Walls are met to within onSurface(), which a wedge makes longer.
+  // Walls are met within onSurface(); in a wedge the distance along it is longer.
   const auto allowed_of = [&](const Rest& rest) {
     return kTolerance * glm::length(rest.point - hip) +
            6.0 * on_surface / std::max(rest.blunt, 1e-3);
@@ -127,17 +127,17 @@ Verdict RestJudge::judge(const TickResult& before, const Vec3& previous_hip, con
     out.is_ambiguous |= glm::length(other - rest.point) > 10.0 * allowed;
     off = std::min(off, glm::length(now.proxy - other));
   }
-  // What is thinner than its steps the oracle goes through: then it starts where the proxy is, with
-  // steps as small.
+  // The oracle passes through parts thinner than its steps. Then it is started again at the proxy,
+  // with equally small steps.
   if (is_rest && off > allowed) {
     out.is_ambiguous |=
         is_pinned || glm::length(oracle_.stay(now.proxy, hip) - now.proxy) <= allowed;
     is_minimum |= out.is_ambiguous;
   }
-  // Either end will do, or another minimum between them; a point that is none will not.
+  // Either end is accepted, or another minimum between them, but not a point that is not a minimum.
   if (off <= allowed || (out.is_ambiguous && is_minimum)) return out;
   if (!rest.has_settled) {
-    // The oracle does not know where it ends; values can still show a place nearby that is nearer
+    // The oracle does not know where it ends; values can still reveal a place nearby that is nearer
     // to the hand.
     for (const double share : {1e-2, 1e-3, 1e-4}) {
       const double gain = oracle_.gainNear(now.proxy, hip, share * depth);

@@ -6,7 +6,7 @@
 namespace palpate::testing {
 namespace {
 
-/// Evenly over the sphere.
+/// Directions spread evenly over the sphere.
 Vec3 directionOf(int i, int count) {
   const double z = 1.0 - (2.0 * i + 1.0) / count;
   const double angle = 2.399963229728653 * i;
@@ -14,7 +14,7 @@ Vec3 directionOf(int i, int count) {
   return {rho * std::cos(angle), rho * std::sin(angle), z};
 }
 
-/// Two unit vectors across `n`.
+/// Two unit vectors perpendicular to `n`.
 std::array<Vec3, 2> across(const Vec3& n) {
   Vec3 other(0.0);
   other[std::fabs(n.x) < 0.6 ? 0 : 1] = 1.0;
@@ -22,8 +22,8 @@ std::array<Vec3, 2> across(const Vec3& n) {
   return {u, glm::cross(n, u)};
 }
 
-/// [m] from a kink so far are the normals about it asked for: nearer by, differences would reach
-/// over it.
+/// [m] Distance from a kink at which the normals around it are computed: nearer, differences would
+/// reach across the kink.
 double aroundKink(const Literal& literal, double radius) {
   return std::max(radius, 4e-5 * literal.feature);
 }
@@ -36,15 +36,16 @@ std::optional<HalfSpaceBound> RestOracle::planeAtKink(const Literal& literal, co
   const Slope far = tree_.slopeAt(literal, x + out, widest);
   const Slope near = tree_.slopeAt(literal, x + 0.5 * out, widest);
   if (far.doubt > Slope::kSingular || near.doubt > Slope::kSingular) return std::nullopt;
-  // What the wall bends over that length, taken away.
+  // Extrapolates, which removes the curvature of the wall over that length.
   const Vec3 normal = 2.0 * near.normal - far.normal;
   return HalfSpaceBound{glm::normalize(normal), literal.value(x) / near.steepness};
 }
 
 bool RestOracle::addKink(Cell& cell, const Literal& literal, int index, const Vec3& x,
                          double radius) const {
-  // The normals around it, taken together where the literal bends as an apex does from within.
-  // Where it bends the other way any of them would do, and this is not the place to tell.
+  // The normals around the kink, used together if the literal there is convex like an apex seen
+  // from within. If it bends the other way, any single one of them would hold, which cannot be
+  // decided here.
   constexpr int kAround = 48;
   const double center = literal.value(x);
   const double around = aroundKink(literal, radius);
@@ -98,7 +99,7 @@ RestCheck RestOracle::check(const Vec3& x, const Vec3& hip) const {
     is_inside = false;
     out.is_judged &= cell.is_judged;
     NearestOfPlanes next = PlaneProblem(cell.planes).nearestTo(way);
-    // At an apex a few normals more, about the way that is left.
+    // At an apex, add a few normals around the remaining direction.
     const bool has_kink = cell.planes.size() > cell.literals.size() + 8;
     out.has_kink |= has_kink || !cell.is_judged;
     for (int more = 0; has_kink && more < 40; ++more) {
@@ -120,8 +121,8 @@ RestCheck RestOracle::check(const Vec3& x, const Vec3& hip) const {
     }
     out.doubt = std::max(out.doubt, cell.doubt);
   }
-  // A point that no cell holds is inside a wall, so it does not rest there; its value alone does
-  // not tell where a blend is far less steep than one.
+  // A point that no cell contains is inside a wall, so it does not rest there. Its value alone does
+  // not show that, where a blend is far less steep than 1.
   if (is_inside) out.residual = depth;
   return out;
 }
@@ -145,7 +146,7 @@ std::optional<Vec3> RestOracle::project(const Vec3& goal, const Vec3& from, doub
         if (slope.doubt > Slope::kSingular) continue;
         const HalfSpaceBound plane{slope.normal, slope.gap + glm::dot(slope.normal, goal - y)};
         planes.push_back(plane);
-        // What an apex showed before it shows no more after the next step.
+        // Planes that the apex gave for an earlier step may no longer hold after the next one.
         if (plane.gap + glm::dot(plane.normal, from - goal) >= -tree_.onSurface()) {
           cuts.push_back(plane);
         }
@@ -183,7 +184,7 @@ RestOracle::Newton RestOracle::newton(const Vec3& x, const Vec3& hip, double rad
     if (!cell.holds) continue;
     const NearestOfPlanes next = PlaneProblem(cell.planes).nearestTo(way);
     const double residual = glm::length(next.point);
-    std::vector<Vec3> basis;  // across the active normals
+    std::vector<Vec3> basis;  // perpendicular to the active normals
     std::vector<Vec3> taken;
     double blunt = 1.0;
     for (int k = 0; k < next.active_count; ++k) {
@@ -206,7 +207,7 @@ RestOracle::Newton RestOracle::newton(const Vec3& x, const Vec3& hip, double rad
     Mat3 bent(1.0);
     const Vec3 push = next.point - way;
     if (!taken.empty() && next.active_count > 0) {
-      // Gram system of at most three, by elimination on the orthonormal ones.
+      // A Gram system of at most three equations, solved by elimination with orthonormal vectors.
       const int m = next.active_count;
       std::array<Vec3, 3> n{};
       for (int k = 0; k < m; ++k) {
@@ -234,7 +235,7 @@ RestOracle::Newton RestOracle::newton(const Vec3& x, const Vec3& hip, double rad
         }
       }
     }
-    // Newton in the tangent space; a way that bends up too little is kept from running off.
+    // Newton's step in the tangent space; where the curvature is too small the step is limited.
     Vec3 step = next.point;
     double least = kInfinity;
     Vec3 least_way(0.0);
@@ -406,7 +407,7 @@ double RestOracle::gainNear(const Vec3& x, const Vec3& hip, double radius) const
     const Vec3 y = x + radius * u;
     const double gain = (depth - glm::length(hip - y)) / radius;
     if (gain <= best || tree_.value(y) < 0.0) return;
-    // There on a way that is open, but for what a bulging wall takes of a chord.
+    // A path to the point must be open, except for the part that a convex wall cuts off a chord.
     for (const double share : {0.25, 0.5, 0.75}) {
       if (tree_.value(x + share * radius * u) < -1e-2 * radius) return;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Where a proxy comes to rest, restarted from where it was: by values of fields alone.
+// Finds where a proxy comes to rest, starting where it was, from values of fields alone.
 
 #include <optional>
 #include <vector>
@@ -9,23 +9,24 @@
 
 namespace palpate::testing {
 
-/// How far a point is from being a local minimum of |x - P|.
+/// How far a point x is from being a local minimum of |x - P|.
 struct RestCheck {
-  /// [m] How far the nearest point of the linearized region, in the worst cell that holds x, lies
-  /// from x; walls nearer than 4 RegionTree::onSurface() count as touched.
+  /// [m] Distance from x to the nearest point of the linearized region, in the worst cell that
+  /// contains x; walls nearer than 4 RegionTree::onSurface() count as touched.
   double residual = 0.0;
-  double doubt = 0.0;  ///< [-] of the normals that decided it
+  double doubt = 0.0;  ///< [-] error bound of the normals that decided it
   bool is_judged =
       true;  ///< false: too many walls at once, or a kink that is neither convex nor concave
-  int touching = 0;       ///< walls that hold it, in the worst cell
-  bool has_kink = false;  ///< one of them has no normal there: an apex, a crease of a black box
+  int touching = 0;  ///< walls that hold it, in the worst cell
+  /// One of them has no normal there: an apex, or a crease of a black-box field
+  bool has_kink = false;
 };
 
 struct Rest {
   Vec3 point{0.0, 0.0, 0.0};
-  bool has_settled = false;  ///< the flow came to a point that passes the check
+  bool has_settled = false;  ///< the flow reached a point that passes the check
   std::vector<Vec3> others =
-      {};              ///< where it ends with steps of a tenth, or off a saddle the other way
+      {};  ///< where the flow ends with steps of a tenth, or in the opposite direction off a saddle
   double blunt = 1.0;  ///< [-] least singular value of the normals that hold it: 1 for one wall,
                        ///< small in wedges
 };
@@ -39,17 +40,18 @@ class RestOracle {
   /// The limit h -> 0 of x <- nearest allowed point to x + h (P - x) / |P - x|, to a second-order
   /// minimum.
   [[nodiscard]] Rest solve(const Vec3& previous, const Vec3& hip) const;
-  /// One run of it, with the coarser step: a tenth of the time.
+  /// A single run with the coarser step, which takes a tenth of the time.
   [[nodiscard]] Rest solveOnce(const Vec3& previous, const Vec3& hip) const;
 
-  /// Where it goes from `x` with steps of 1e-6 of the depth: the finest walls hold it.
+  /// Where the flow goes from `x` with steps of 1e-6 of the depth, so that even the thinnest walls
+  /// hold it.
   [[nodiscard]] Vec3 stay(const Vec3& x, const Vec3& hip) const;
 
-  /// [-] Most that |x - P| falls on the way to a point `radius` away, as a share of it, by the
-  /// tree's value alone: directions tried, then refined. Nothing if all of them are closed.
+  /// [-] Largest relative decrease of |x - P| towards an allowed point `radius` away, by the tree's
+  /// value alone: directions are tried, then refined. Nothing if all of them are closed.
   [[nodiscard]] double gainNear(const Vec3& x, const Vec3& hip, double radius) const;
 
-  /// Least curvature of |x - P|^2 / 2 along the walls that hold x, of the worst cell; infinite at a
+  /// Least curvature of |x - P|^2 / 2 along the walls that hold x, in the worst cell; infinite at a
   /// corner.
   [[nodiscard]] double leastCurvature(const Vec3& x, const Vec3& hip) const;
 
@@ -57,8 +59,8 @@ class RestOracle {
   struct Cell {
     std::vector<int> literals;
     std::vector<HalfSpaceBound> planes;
-    std::vector<int> owner;  ///< of each plane: its literal
-    bool holds = true;       ///< x is in it
+    std::vector<int> owner;  ///< the literal of each plane
+    bool holds = true;       ///< the cell contains x
     bool is_judged = true;
     double doubt = 0.0;
   };
@@ -71,7 +73,7 @@ class RestOracle {
   };
   [[nodiscard]] Cell cellAt(const Vec3& x, const Nearby& nearby, std::uint32_t bits, double radius,
                             double granted, bool asks_creases) const;
-  /// Of a literal that has no normal at `x`, the plane there that continues its surface at `x +
+  /// For a literal without a normal at `x`: the plane there that continues its surface at `x +
   /// out`.
   [[nodiscard]] std::optional<HalfSpaceBound> planeAtKink(const Literal& literal, const Vec3& x,
                                                           const Vec3& out) const;

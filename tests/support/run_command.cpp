@@ -40,7 +40,7 @@ struct Pipe {
   }
 };
 
-/// Takes what is there; false at the end.
+/// Reads everything available; false at the end.
 bool drain(int from, std::string& into) {
   std::array<char, 65536> buffer{};
   const ssize_t count = read(from, buffer.data(), buffer.size());
@@ -69,7 +69,7 @@ CommandResult runPalpate(const std::vector<std::string>& arguments, const std::s
     dup2(out.write_end, STDOUT_FILENO);
     dup2(err.write_end, STDERR_FILENO);
     if (!folder.empty() && chdir(folder.c_str()) != 0) _exit(126);
-    // Grids that one test has kept do not concern another; tests about keeping say where.
+    // Grids kept by one test must not affect another one; tests about keeping set their own folder.
     setenv("PALPATE_CACHE", "off", 0);
     execv(program.c_str(), argv.data());
     _exit(127);

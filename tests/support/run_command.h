@@ -1,5 +1,5 @@
 #pragma once
-// Runs the built command as a user would, and catches all that it says.
+// Runs the built command as a user would, and captures its output.
 
 #include <sys/types.h>
 
@@ -16,7 +16,7 @@ struct CommandResult {
   std::string err;
 };
 
-/// Told all that stderr has brought so far, whenever something came, and the process it is from.
+/// Called with all of stderr so far whenever more arrives, and with the process that wrote it.
 using OnTalk = std::function<void(std::string_view err, pid_t process)>;
 
 /// Runs `palpate ARGUMENTS...` in `folder` (empty: where the test runs) without a terminal.

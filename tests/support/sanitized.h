@@ -1,6 +1,6 @@
 #pragma once
-// Whether this is a build with sanitizers: some twenty times slower, it is there to see memory and
-// races, and what is measured by long runs is seen by the release build.
+// Whether this is a build with sanitizers. Such a build is some twenty times slower and serves to
+// find faults of memory and races; long measurements are left to the release build.
 
 namespace palpate::test {
 

@@ -19,7 +19,7 @@ inline std::string scansFolder() {
 
 inline std::string scanPath(const std::string& name) { return scansFolder() + "/" + name; }
 
-/// Why a test that needs `path` is skipped; tools/test.sh counts these by file.
+/// The reason for skipping a test that needs `path`; tools/test.sh counts these by file.
 inline std::string absentScan(const std::string& path) {
   const std::string folder = scansFolder();
   const std::string name = std::filesystem::path(path).lexically_relative(folder).generic_string();
@@ -29,6 +29,6 @@ inline std::string absentScan(const std::string& path) {
 
 }  // namespace palpate::testing
 
-/// Skips the test if a file or folder of the scans is not there, and says which.
+/// Skips the test if a file or folder of the scans is missing, and says which one.
 #define PALPATE_NEEDS_SCAN(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << ::palpate::testing::absentScan(path)

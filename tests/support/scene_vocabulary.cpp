@@ -9,7 +9,7 @@
 namespace palpate::testing {
 
 const Document& sceneSchema() {
-  // JSON is a subset of what the scene reader reads.
+  // JSON is a subset of the language that the scene reader accepts.
   static const auto schema = readDocument(test::sourceFolder() + "/data/schema/scene-1.json");
   return *schema;
 }
@@ -32,7 +32,7 @@ Words allSchemaKeys() {
   for (const Node::Entry& definition : sceneSchema().root.find("definitions")->entries) {
     if (definition.value.find("properties") != nullptr) keys.merge(schemaKeys(definition.key));
   }
-  // One map is too small for a definition of its own.
+  // One map is too small to have a definition of its own.
   keys.insert("region");
   return keys;
 }

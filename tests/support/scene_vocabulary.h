@@ -1,5 +1,5 @@
 #pragma once
-// The vocabulary of scene files, as the JSON Schema says it and as the reader shows it.
+// The vocabulary of scene files, as the JSON Schema states it and as the reader reports it.
 
 #include <set>
 #include <string>
@@ -16,15 +16,15 @@ const Document& sceneSchema();
 /// Keys that the schema allows in `definition`; the top level's for "".
 Words schemaKeys(const std::string& definition);
 
-/// Every key that the schema allows anywhere, but for names that authors give.
+/// Every key that the schema allows anywhere, except names that authors choose.
 Words allSchemaKeys();
 
-/// The keys that the reader knows in the map of `scene` where the key kNoKey stands: those its
-/// refusal lists.
+/// The keys that the reader knows in the map of `scene` that contains the key kNoKey: its error
+/// lists them.
 Words readerKeys(const std::string& scene, const SceneRegistry& registry,
                  const std::string& file = "test.yaml");
 
-/// Unlike every key, so that the reader lists all it knows and suggests none.
+/// A key unlike all others, so that the reader lists all keys and suggests none.
 inline constexpr const char* kNoKey = "qqqqqqqqqqqqqqqqqqqq";
 
 }  // namespace palpate::testing

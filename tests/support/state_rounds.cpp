@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kOn = 500;  // ticks
 
-/// What one tick came to, with what no force shows.
+/// The result of one tick, including parts that the force does not show.
 struct Felt {
   TickResult result;
   double source_work = 0.0;          // [J]
@@ -77,8 +77,8 @@ std::vector<Felt> feel(HapticRenderer& renderer, const std::vector<HipState>& mo
   return ::testing::AssertionSuccess();
 }
 
-/// Null if the scene is refused. What is felt is limited in its growth, so that those limits are
-/// part of the state too.
+/// Null if the scene is refused. The growth of the force is limited, so that these limits are part
+/// of the state too.
 std::unique_ptr<HapticRenderer> rendererOf(const ScenePtr& scene, RendererKind kind) {
   RendererSettings settings;
   settings.kind = kind;

@@ -16,16 +16,16 @@ namespace palpate::test {
 namespace {
 
 constexpr int kTicks = 1200;
-constexpr int kKept = 20;  // one row of so many ticks
+constexpr int kKept = 20;  // one row is kept of so many ticks
 
-/// One tick as it is kept; [m] and [N].
+/// One tick of a stored trace; [m] and [N].
 struct Row {
   int tick = 0;
   Vec3 proxy{0.0};
   Vec3 force{0.0};
   bool contact = false;
   std::string region = {};
-  std::string events = "-";  ///< ports passed since the last row
+  std::string events = "-";  ///< ports passed since the previous row
 };
 
 std::vector<Row> feel(const ScenePtr& scene, RendererKind kind) {
@@ -57,7 +57,7 @@ std::vector<Row> feel(const ScenePtr& scene, RendererKind kind) {
   return rows;
 }
 
-/// Names without blanks, so that a row is words.
+/// Replaces blanks in names, so that a row consists of words.
 std::string word(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
@@ -102,7 +102,7 @@ std::vector<Vec3> pathThrough(const Scene& scene) {
   constexpr int kTicksALeg = 150;
   std::vector<Vec3> corners = {center + 1.3 * half};
   for (int leg = 0; leg <= kTicks / kTicksALeg; ++leg) {
-    // Now and then back out, so that what was passed is left again.
+    // From time to time back out, so that regions are left again.
     const double reach = leg % 4 == 3 ? 1.25 : 0.9;
     corners.push_back(center + reach * half * random.in({Vec3(-1.0), Vec3(1.0)}));
   }

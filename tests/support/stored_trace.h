@@ -1,6 +1,6 @@
 #pragma once
-// What a scene feels like, kept as a small text beside the tests, so that a change of numbers
-// between versions is seen. PALPATE_REWRITE_TRACES=1 writes the texts anew.
+// Stores what a scene feels like as a small text beside the tests, so that a change of numbers
+// between versions is noticed. PALPATE_REWRITE_TRACES=1 writes the texts anew.
 
 #include <gtest/gtest.h>
 
@@ -12,17 +12,17 @@
 namespace palpate::test {
 
 /// The path [m] of a scene, 1200 ticks: from place to place in and around its bounds, smoothly, and
-/// now and then back out.
+/// from time to time back out.
 [[nodiscard]] std::vector<Vec3> pathThrough(const Scene& scene);
 
-/// Drives a renderer of `kind` along the one path that `scene`'s bounds make, and compares what it
-/// says with `file`; or writes `file`. A scene that the renderer refuses is kept as one line with
-/// the reason's code.
+/// Drives a renderer of `kind` along the path that follows from `scene`'s bounds, and compares its
+/// results with `file`; or writes `file`. A scene that the renderer refuses is stored as one line
+/// with the error's code.
 ///
-/// Proxies agree within 1e-8 m, forces within 1e-5 N and 1e-5 of themselves: a hundred times what
-/// two compilers' rounding makes of minima that are met to 1e-6 of a depth of some millimeters, and
-/// below what a hand can feel by a thousand times. Regions, contact and the ports passed agree
-/// exactly.
+/// Proxies must agree within 1e-8 m, forces within 1e-5 N plus 1e-5 of their size. That is a
+/// hundred times the effect of two compilers' rounding on minima that are met to 1e-6 of a depth of
+/// some millimeters, and a thousandth of what a hand can feel. Regions, contact and the ports
+/// passed must agree exactly.
 [[nodiscard]] ::testing::AssertionResult compareWithStored(const ScenePtr& scene, RendererKind kind,
                                                            const std::string& file);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Files that a test makes and that go with it.
+// Files that a test makes and that are removed with it.
 
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 
 namespace palpate::testing {
 
-/// A folder of its own, removed with all that is in it.
+/// A temporary folder, removed with everything in it.
 class TempFolder {
  public:
   TempFolder() {
@@ -26,7 +26,7 @@ class TempFolder {
 
   [[nodiscard]] std::string path(const std::string& name = {}) const { return path_ + "/" + name; }
 
-  /// Writes `text` as it is, bytes and all; the path of the file.
+  /// Writes `text` byte by byte; returns the path of the file.
   [[nodiscard]] std::string file(const std::string& name, std::string_view text) const {
     std::ofstream out(path(name), std::ios::binary);
     out.write(text.data(), static_cast<std::streamsize>(text.size()));

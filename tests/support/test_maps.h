@@ -1,5 +1,5 @@
 #pragma once
-// Material maps of closed form.
+// Material maps given by formulas.
 
 #include <algorithm>
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace palpate::testing {
 
-/// value + gradient . p, held within a range: the gradient vanishes where the range ends it.
+/// value + gradient . p, clamped to a range: the gradient is zero where it is clamped.
 class LinearMap final : public MaterialMap {
  public:
   LinearMap(double value, const Vec3& gradient, Range range)
@@ -30,7 +30,7 @@ class LinearMap final : public MaterialMap {
   Range range_;
 };
 
-/// Any function with its gradient, and the range that the test vouches for.
+/// Any function with its gradient, and with a range that the test guarantees.
 class FunctionMap final : public MaterialMap {
  public:
   using Function = std::function<Sample(const Vec3&)>;
@@ -50,7 +50,7 @@ class FunctionMap final : public MaterialMap {
                                               MaterialMap::Range range) {
   return std::make_shared<LinearMap>(value, gradient, range);
 }
-/// The same everywhere, though nothing but its values says so.
+/// The same value everywhere, which only the values themselves show.
 [[nodiscard]] inline MaterialMapPtr flatMap(double value) {
   return linearMap(value, Vec3(0.0), {value, value});
 }

@@ -1,14 +1,14 @@
 #pragma once
-// One axis of a held device, integrated exactly: an oracle of its own for what closes a loop around
-// it.
+// One axis of a held device, integrated exactly: an independent oracle for code that closes a loop
+// around it.
 
 #include <cmath>
 
 namespace palpate::testing {
 
-/// A mass with two dampers, its own and a hand's, and the hand's spring to where the hand wants to
-/// be. The motor's force is held for a period, and so is where the hand wants to be. The motion in
-/// between is the closed form of the damped oscillator, which may swing or creep.
+/// A mass with two dampers, its own and the hand's, and the hand's spring to its target. The
+/// motor's force and the target are held constant for a period. The motion in between is the closed
+/// form of the damped oscillator, which may be underdamped or overdamped.
 class TinyPlant {
  public:
   struct Parts {
@@ -21,7 +21,7 @@ class TinyPlant {
   TinyPlant(const Parts& parts, double period, double position = 0.0, double velocity = 0.0)
       : parts_(parts), part_(period / kParts), x_(position), v_(velocity), first_(energy()) {}
 
-  /// A period under the motor's `force` [N], with the hand at `aim` [m].
+  /// Runs one period under the motor's `force` [N], with the hand's target at `aim` [m].
   void step(double force, double aim) noexcept {
     const double begin = x_;
     for (int i = 0; i < kParts; ++i) {
@@ -37,10 +37,10 @@ class TinyPlant {
 
   [[nodiscard]] double position() const noexcept { return x_; }
   [[nodiscard]] double velocity() const noexcept { return v_; }
-  /// [J] that the motor gave.
+  /// [J] work of the motor.
   [[nodiscard]] double work() const noexcept { return work_; }
-  /// [J] that came out at the hand's side of the device: what the motor gave, less what the device
-  /// lost and keeps moving with.
+  /// [J] energy that left the device at the hand's side: the motor's work, minus the device's
+  /// losses and its gain of kinetic energy.
   [[nodiscard]] double givenToHand() const noexcept { return work_ - lost_ - energy() + first_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Waits for another thread, but not forever: a test fails instead of hanging.
+// Waits for another thread, but with a limit: a test fails instead of hanging.
 
 #include <chrono>
 #include <thread>

@@ -1,4 +1,4 @@
-// What threads share: one scene, felt by several renderers at a time, each with its own thread.
+// Sharing between threads: one scene, felt by several renderers at a time, each in its own thread.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kThreads = 4;
 constexpr int kTicks = 3'000;
 
-/// A hand that wanders through the scene, the same for the same seed.
+/// The results of a hand that wanders through the scene, the same for the same seed.
 std::vector<TickResult> felt(const ScenePtr& scene, RendererKind kind, std::uint64_t seed) {
   Drive drive(scene, kind);
   Random random(seed);

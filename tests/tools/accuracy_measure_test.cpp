@@ -1,4 +1,4 @@
-// The measure behind `palpate accuracy`, on fields whose errors are known beforehand.
+// The measurements of `palpate accuracy`, on fields whose errors are known in advance.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ TEST(AccuracyMeasure, AFieldAgainstItselfHasNoError) {
 }
 
 TEST(AccuracyMeasure, AnOffsetShowsAsThatOffset) {
-  // The ball grown by 0.01 mm: the same normals and parallel surfaces, other values.
+  // The ball grown by 0.01 mm: the same normals and parallel surfaces, but other values.
   const FieldPtr grown = sphere(kCenter, 10.01e-3);
   const Errors errors = errorsAt(*grown, aroundTheBall(2000).points, true);
   EXPECT_NEAR(errors.value.rms, 0.01e-3, 1e-15);
@@ -61,7 +61,7 @@ TEST(AccuracyMeasure, ATiltShowsInDegrees) {
 }
 
 TEST(AccuracyMeasure, ABentSurfaceShowsItsCurvature) {
-  // A ball of 10 mm where a plane should be: 1 / (10 mm) too much.
+  // A ball of 10 mm in place of a plane: 1 / (10 mm) too much curvature.
   std::vector<JudgedPoint> points = {
       {kCenter + Vec3(10e-3, 0.0, 0.0), {0.0, Vec3(1.0, 0.0, 0.0), 0.0}, true}};
   const Errors errors = errorsAt(*sphere(kCenter, 10e-3), points, true);
@@ -71,7 +71,7 @@ TEST(AccuracyMeasure, ABentSurfaceShowsItsCurvature) {
 TEST(AccuracyMeasure, ImplicitValuesAreDividedByTheirSlopeIfAsked) {
   const FieldPtr ball = implicitEllipsoid(kCenter, Vec3(10e-3));
   const PointSet set = pointsNear(Truth(ball), 0.1e-3, 500, 0.1e-3);
-  // To second order S / |grad S| of (r / R)^2 - 1 is off by d^2 / (2 R).
+  // To second order, S / |grad S| of (r / R)^2 - 1 has an error of d^2 / (2 R).
   const Errors errors = errorsAt(*ball, set.points, true, ValueIs::kOverSlope);
   EXPECT_GT(errors.value.most, 0.4e-6);
   EXPECT_LT(errors.value.most, 0.52e-6);
@@ -91,8 +91,8 @@ TEST(AccuracyPoints, LieEvenlyInTheBandAndAreTheSameEveryTime) {
     outside += distance > 0.0 ? 1 : 0;
     above += point.at.z > kCenter.z ? 1 : 0;
   }
-  // The outer half of the shell holds a little more, (10.5^3 - 10^3) / (10.5^3 - 9.5^3) = 0.525;
-  // five standard deviations of 4000 draws are 0.04.
+  // The outer half of the shell has slightly more volume, (10.5^3 - 10^3) / (10.5^3 - 9.5^3) =
+  // 0.525; five standard deviations of 4000 draws are 0.04.
   EXPECT_NEAR(outside / 4000.0, 0.525, 0.04);
   EXPECT_NEAR(above / 4000.0, 0.5, 0.04);
   const PointSet again = aroundTheBall(4000);
@@ -116,7 +116,8 @@ TEST(AccuracyPoints, StrokesFollowTheSurfaceStepByStep) {
       ASSERT_NEAR(glm::length(step), 2.0 * 10e-3 * std::sin(0.5 * angle), 1e-12);
     }
   }
-  // Along a great circle three normals in a row miss a straight line by 2 (1 - cos angle).
+  // Along a great circle, three successive normals deviate from a straight line by 2 (1 - cos
+  // angle).
   const Jitter jitter = jitterOf(*sphere(kCenter, 10e-3), strokes);
   EXPECT_EQ(jitter.points, 3U * 198U);
   for (const double found : {jitter.field.rms, jitter.field.most, jitter.truth.most}) {
@@ -135,7 +136,7 @@ TEST(AccuracyTruth, TheFootOfAnImplicitFieldIsItsNearestPoint) {
     ASSERT_TRUE(found);  // no center of curvature is nearer than 4 mm
     ASSERT_NEAR(found->value, point.truth.value, 1e-15);
     ASSERT_LT(glm::length(found->normal - point.truth.normal), 1e-10);
-    // The exact field's Hessian is by differences here: a millionth of it.
+    // The exact field's Hessian comes from differences here, with an error of a millionth.
     ASSERT_NEAR(found->curvature, point.truth.curvature, 1e-4 * point.truth.curvature);
   }
 }
@@ -147,7 +148,7 @@ TEST(AccuracyTruth, EdgesAndTightBendsAreToldFromSmoothParts) {
   EXPECT_FALSE(isSmoothAround(*brick, Vec3(20e-3, 18e-3, 0.0), 1e-3));    // the edge
   EXPECT_FALSE(isSmoothAround(*brick, Vec3(21e-3, 19.5e-3, 0.0), 1e-3));  // outside of it
   EXPECT_TRUE(isSmoothAround(*brick, Vec3(20e-3, 18e-3, 0.0), 0.25e-3));
-  // A ball of 6 voxels is smooth, though its center is an axis; of 1 voxel it is as good as a
+  // A ball of 6 voxels is smooth, though its center is a medial axis; a ball of 1 voxel counts as a
   // corner.
   EXPECT_TRUE(isSmoothAround(*sphere(Vec3(0.0), 7e-3), Vec3(7e-3, 0.0, 0.0), 1e-3));
   EXPECT_FALSE(isSmoothAround(*sphere(Vec3(0.0), 1e-3), Vec3(1.5e-3, 0.2e-3, 0.0), 1e-3));

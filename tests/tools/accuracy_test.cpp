@@ -1,5 +1,5 @@
-// `palpate accuracy`: the errors and orders that its samplers have, the form of what it prints, and
-// its manners. Times are figures to print, never to assert.
+// `palpate accuracy`: the errors and orders of its samplers, the form of its output, and its
+// behavior as a command. Times are printed, never asserted.
 
 #include <algorithm>
 #include <map>
@@ -13,14 +13,14 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Few points and one timed run: enough for errors.
+/// Few points and one timed run: enough to measure errors.
 Words quick(const std::string& scene, const Words& more) {
   Words words = {"accuracy", scene, "--points", "1500", "--repeat", "1", "--quiet"};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
 
-/// A ball of 10 mm, what reaches to infinity, and a plate that lies between voxels of 5 mm.
+/// A ball of 10 mm, an unbounded layer, and a plate that lies between voxels of 5 mm.
 constexpr const char* kScene = R"(palpate: 1
 length: mm
 fields:
@@ -42,7 +42,7 @@ const Json& samplerOf(const Json& grid, const std::string& name) {
   return none;
 }
 
-/// Without what takes time: machine and clock.
+/// The report without figures that vary between runs: machine and times.
 Json withoutTimes(Json json) {
   if (json.is_object()) {
     for (const char* key : {"machine", "query_ns", "bake_seconds", "make_seconds"}) json.erase(key);
@@ -70,15 +70,15 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
   const Json& fine = torus["grids"][1];
   EXPECT_EQ(number(fine["voxel_size_m"]), 1e-3);
   EXPECT_GT(fine["active_voxels"].get<int>(), 200000);
-  // A cubic spline leaves 1.8e-4 degree and 2e-6 mm of such a torus; its jitter is within 5 % of
-  // the exact surface's.
+  // On such a torus a cubic spline has errors of 1.8e-4 degree and 2e-6 mm; its jitter is within 5
+  // % of the exact surface's.
   const Json& cubic = samplerOf(fine, "cubic");
   EXPECT_LE(number(cubic["smooth"]["normal_error_degrees"]["rms"]), 1.8e-4);
   EXPECT_LE(number(cubic["smooth"]["value_error_m"]["rms"]), 2e-9);
   EXPECT_LE(number(cubic["smooth"]["curvature_error_per_m"]["max"]), 0.1);
   EXPECT_NEAR(number(cubic["jitter"]["max"]), number(cubic["jitter"]["true_max"]),
               0.05 * number(cubic["jitter"]["true_max"]));
-  // Trilinear, as measured elsewhere (reference): 6.2e-3 mm and 0.82 degree, 0.07 of jitter.
+  // Trilinear, as measured elsewhere (reference): 6.2e-3 mm and 0.82 degree, jitter 0.07.
   for (const char* name : {"trilinear", "accessor"}) {
     const Json& trilinear = samplerOf(fine, name);
     EXPECT_NEAR(number(trilinear["smooth"]["normal_error_degrees"]["rms"]), 0.82, 0.03) << name;
@@ -105,8 +105,8 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
     }
   }
 
-  // The README's table (tools/bench.sh makes it, with more points) says the same: to its two
-  // digits, and to what an RMS over 1500 points strays.
+  // The README's table (made by tools/bench.sh, with more points) agrees: within its two digits,
+  // and within the statistical error of an RMS over 1500 points.
   int rows = 0;
   for (std::string line : linesOf(textOf(test::sourceFolder() + "/README.md"))) {
     std::replace(line.begin(), line.end(), '|', ',');
@@ -123,9 +123,9 @@ TEST(Accuracy, TheTorusHasTheErrorsAndOrdersOfItsSamplers) {
   EXPECT_EQ(rows, 3);
 }
 
-// Where ball and cylinder meet, curvature jumps: a strip of a stencil's width is off by the square
-// of the voxel, and its normal by the voxel. In the RMS over the surface that makes half an order
-// more.
+// Where the ball and the cylinder of a capsule meet, curvature jumps. In a strip as wide as a
+// stencil, the value has an error of the order of the voxel squared, and the normal one of the
+// order of the voxel. In the RMS over the whole surface this adds half an order.
 TEST(Accuracy, TheSeamOfACapsuleShowsInItsOrders) {
   const CommandResult result = runPalpate({"accuracy", scenePath("reference.yaml"), "--repeat", "1",
                                            "--quiet", "--field", "pill", "--ladder", "2,1,0.5",
@@ -147,7 +147,8 @@ TEST(Accuracy, EdgesAreToldApart) {
   EXPECT_GT(grid["points_near_edges"].get<int>(), 100);
   ASSERT_EQ(grid["samplers"].size(), 2U);
   for (const Json& sampler : grid["samplers"]) {
-    // Flat faces are exact for every interpolant; no interpolant holds an edge (11 to 14 degrees).
+    // Flat faces are exact for every interpolant; no interpolant holds an edge (errors of 11 to 14
+    // degrees).
     EXPECT_LE(number(sampler["smooth"]["normal_error_degrees"]["rms"]), 0.02);
     EXPECT_GE(number(sampler["near_edges"]["normal_error_degrees"]["rms"]), 3.0);
   }
@@ -162,7 +163,7 @@ TEST(Accuracy, ImplicitFieldsAreJudgedByTheExactDistance) {
   EXPECT_EQ(gyroid["metric"], "implicit");
   EXPECT_EQ(gyroid["truth"], "projection");
   EXPECT_EQ(gyroid["layer"], true);
-  // S / |grad S| is off by second order: some micrometers and a degree, as measured elsewhere
+  // S / |grad S| has a second-order error: some micrometers and a degree, as measured elsewhere
   // (reference: 3.8e-3 mm and 0.69 degree). The grid holds the exact distance, and is better than
   // the field.
   const Json& analytic = gyroid["analytic"]["errors"];
@@ -216,7 +217,7 @@ TEST(Accuracy, WritesATableAndPlots) {
   EXPECT_TRUE(isWellFormed(svg));
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 
-  // Nothing is overwritten unasked.
+  // No file is overwritten without --force.
   EXPECT_EQ(runPalpate(words, folder.path()).exit_code, 1);
   EXPECT_EQ(textOf(folder.path() + "/a.svg"), svg);
   Words forced = words;
@@ -235,7 +236,7 @@ TEST(Accuracy, AVoxelSizeThatCannotHoldTheShapeIsToldAndLeftOut) {
   EXPECT_TRUE(plate["grids"][0]["why_not"].is_string());
   EXPECT_EQ(plate["grids"][1]["samplers"].size(), 1U);
   EXPECT_TRUE(plate["orders"][0]["value"].is_null());
-  // None is left.
+  // No field is left to compare.
   const CommandResult none = runPalpate(quick(scene, {"--field", "plate", "--voxel", "5"}));
   EXPECT_EQ(none.exit_code, 3) << none.out;
   EXPECT_NE(none.err.find("plate"), std::string::npos) << none.err;

@@ -1,4 +1,4 @@
-// Every bad input gives one clear error, exit 3, and leaves nothing behind.
+// Every bad input gives one clear error and exit 3, and leaves no file behind.
 
 #include <cstring>
 
@@ -47,8 +47,8 @@ std::string scene(const std::string& layers, const std::string& ports) {
 struct Bad {
   std::string name;
   std::string file;
-  std::string content;                 // "" with no file: it is missing
-  std::vector<std::string> arguments;  // with FILE for the path
+  std::string content;                 // "" with no file: the file is missing
+  std::vector<std::string> arguments;  // FILE stands for the path
   std::vector<std::string> says;       // parts of the message
 };
 

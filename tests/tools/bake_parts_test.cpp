@@ -1,4 +1,4 @@
-// palpate bake where shapes have edges: what a grid of the whole loses, and that --parts keeps it.
+// palpate bake on shapes with edges: what a grid of the whole loses, and that --parts keeps it.
 
 #include <cmath>
 #include <cstdio>
@@ -10,7 +10,7 @@
 namespace palpate::testing {
 namespace {
 
-/// A turned box, a shell of one voxel, and a turned box of foam with a hole in it; in mm.
+/// A rotated box, a shell of one voxel, and a rotated box of foam with a hole in it; in mm.
 constexpr const char* kShapes = R"(palpate: 1
 length: mm
 description: "edges: kept, not baked"
@@ -36,7 +36,8 @@ const Pose kTurned{rotationAbout(Vec3(1.0, 2.0, 3.0), 40.0 * std::numbers::pi / 
                    Vec3(1.3, -0.4, 0.6)};
 const Vec3 kHalf(30.0, 20.0, 25.0);
 
-/// Within half a voxel of the surface of the turned box, and two of one of its edges.
+/// Points within half a voxel of the surface of the rotated box, and within two of one of its
+/// edges.
 std::vector<Vec3> nearEdges() {
   std::vector<Vec3> points;
   for (int i = 0; i < 300; ++i) {
@@ -116,7 +117,7 @@ class BakeParts : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return runPalpate(arguments, folder_.path());
   }
-  /// The foam, cut off at any place, is too thin somewhere for one grid.
+  /// The foam, wherever it is cut off, is somewhere too thin for a single grid.
   CommandResult bakeWhole() {
     return bake({"-o", "whole.vdb", "--layer", "box", "--layer", "peel"});
   }
@@ -138,7 +139,7 @@ TEST_F(BakeParts, AGridOfTheWholeTellsWhatItLoses) {
   }
   EXPECT_NE(result.err.find("--parts"), std::string::npos) << result.err;
 
-  // A shape without edges loses nothing, and is not talked about.
+  // A shape without edges loses nothing, and gets no note.
   (void)folder_.file("ball.yaml",
                      "palpate: 1\nlength: mm\nlayers:\n"
                      "  - {name: ball, inside: {sphere: {center: [0, 0, 0], radius: 20}}}\n");
@@ -156,7 +157,8 @@ TEST_F(BakeParts, EdgesAndThinShellsStayExactThroughTheCommand) {
   ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
   const Json json = parseOnly(result);
   EXPECT_EQ(json["scene"], "hybrid.yaml");
-  // Of the foam only the wave became a grid: all else is exact, or has edges, or a port is on it.
+  // Of the foam only the wave became a grid: all other parts are exact, have edges, or carry a
+  // port.
   ASSERT_EQ(json["grids"].size(), 1U) << json;
   EXPECT_EQ(json["grids"][0]["name"], "foam/surface/1.2");
   EXPECT_EQ(filesIn(folder_.path()),
@@ -167,14 +169,14 @@ TEST_F(BakeParts, EdgesAndThinShellsStayExactThroughTheCommand) {
                      "  - {name: box, inside: {grid: {file: whole.vdb, name: box/surface}}}\n"
                      "  - {name: peel, inside: {grid: {file: whole.vdb, name: peel/surface}}}\n");
 
-  // To rounding of a few centimeters: 1e-16 of them, in mm.
+  // Up to the rounding of a few centimeters: 1e-16 of that, in mm.
   const Errors box = compare(ask(folder_, "s.yaml", "box"), ask(folder_, "hybrid.yaml", "box"));
   const Errors box_grid = compare(ask(folder_, "s.yaml", "box"), ask(folder_, "whole.yaml", "box"));
   EXPECT_LE(box.value, 1e-12);
   EXPECT_LE(box.normal, 1e-6);
   EXPECT_GT(box_grid.normal, 5.0);
 
-  // The edges of the foam's box, where the foam is solid: the faces are as exact as before.
+  // At the edges of the foam's box, where the foam is solid, the faces are as exact as before.
   std::vector<Vec3> turned_back = nearEdges();
   for (Vec3& p : turned_back) p = kTurned.applyInverse(p);
   (void)folder_.file("p.csv", pointsCsv(turned_back));
@@ -190,7 +192,7 @@ TEST_F(BakeParts, EdgesAndThinShellsStayExactThroughTheCommand) {
   EXPECT_LE(foam.value, 1e-12);
   EXPECT_LE(foam.normal, 1e-6);
 
-  // Across the shell, from 0.9 mm outside to 0.9 mm within it.
+  // Across the shell, from 0.9 mm outside to 0.9 mm inside.
   points.clear();
   for (int i = 0; i < 300; ++i) {
     const Vec3 u =
@@ -215,7 +217,7 @@ TEST_F(BakeParts, TheSceneIsFeltAsBeforeFromAnotherFolderToo) {
   std::filesystem::create_directory(folder_.path("out"));
   ASSERT_EQ(bake({"-o", "out/parts.vdb", "--parts", "out/hybrid.yaml"}).exit_code, 0);
   const auto touch = [&](const std::string& scene) {
-    // Onto an edge of the turned box's.
+    // Press onto an edge of the rotated box.
     const Vec3 p = kTurned.apply(kHalf * Vec3(0.1, 1.0, 1.0));
     const Vec3 n = kTurned.rotate(Vec3(0.0, 0.6, 0.8));
     const auto text = [](const Vec3& v) {
@@ -242,7 +244,8 @@ TEST_F(BakeParts, SaysWhyThereIsNothingToDo) {
       << nothing.err;
   (void)folder_.file("m.stl", "solid m\nendsolid m\n");
   EXPECT_EQ(bake({"-o", "a.vdb", "--parts", "a.yaml"}, "m.stl").exit_code, 2);
-  EXPECT_EQ(bake({"-o", "a.vdb", "--parts", "s.yaml"}).exit_code, 2);  // it is the input
+  // The output would overwrite the input
+  EXPECT_EQ(bake({"-o", "a.vdb", "--parts", "s.yaml"}).exit_code, 2);
   EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"m.stl", "p.csv", "s.yaml"}));
 }
 

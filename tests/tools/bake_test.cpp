@@ -1,4 +1,4 @@
-// palpate bake: scenes, meshes and images to .vdb files, and how it is stopped.
+// palpate bake: writes scenes, meshes and images to .vdb files, and can be stopped.
 
 #include <cmath>
 #include <cstdio>
@@ -29,8 +29,8 @@ std::string cubeObj(double side, std::size_t faces = 12) {
   return text;
 }
 
-/// A ball of value 100 (label 3) in an image of 24^3 voxels of 1 mm, and a small one of 60 (label
-/// 5).
+/// A ball of value 100 (label 3) in an image of 24^3 voxels of 1 mm, and a small one of value 60
+/// (label 5).
 vdb::test::NiftiFile balls(bool labels) {
   vdb::test::NiftiFile file;
   file.dim = {24, 24, 24};
@@ -211,7 +211,7 @@ TEST(Bake, AnImageByThresholdOrByLabel) {
       runPalpate({"bake", gray, "-o", folder.path("g.vdb"), "--above", "50", "--json"});
   ASSERT_EQ(skin.exit_code, 0) << skin.err << skin.out;
   EXPECT_EQ(parseOnly(skin)["grids"][0]["name"], "gray/surface");
-  // Only the large ball, whose radius is 6.5 mm about (9, 10, 11) mm.
+  // Only the large ball remains, whose radius is 6.5 mm about (9, 10, 11) mm.
   EXPECT_LT(parseOnly(skin)["grids"][0]["bounds_m"]["hi"][0], 0.0215);
 
   const CommandResult both = runPalpate(
@@ -239,8 +239,8 @@ TEST(Bake, AnImageByThresholdOrByLabel) {
   EXPECT_NE(slip.err.find("kidney"), std::string::npos) << slip.err;
 }
 
-// A plate of one voxel of 1 mm, beside a ball: voxels of 1 mm hold it, voxels of 5 mm, at 0 and 5
-// mm, pass it by.
+// A plate of one voxel of 1 mm, beside a ball: voxels of 1 mm hold the plate, but it lies between
+// voxels of 5 mm, whose centers are at 0 and 5 mm.
 TEST(Bake, WhatTheVoxelsCannotHoldOfALabelIsTold) {
   const TempFolder folder;
   vdb::test::NiftiFile file = balls(true);
@@ -283,7 +283,7 @@ TEST(Bake, MemoryIsRefusedBeforeItIsTaken) {
   EXPECT_EQ(refused.exit_code, 1);
   const Json error = parseOnly(refused)["error"];
   EXPECT_EQ(error["code"], "bake.memory");
-  // The estimate, the limit, and both remedies.
+  // The message gives the estimate, the limit, and both remedies.
   EXPECT_NE(error["message"].get<std::string>().find(" GB; 0.050 GB"), std::string::npos) << error;
   EXPECT_NE(error["hint"].get<std::string>().find("voxels of "), std::string::npos) << error;
   EXPECT_NE(error["hint"].get<std::string>().find("--max-memory"), std::string::npos) << error;
@@ -326,8 +326,8 @@ layers:
 }
 
 TEST(Bake, AnInterruptStopsItAndLeavesNothing) {
-  // A heart, for which closest points are searched: far longer than the two seconds after which
-  // progress is shown.
+  // A heart, for which closest points have to be searched: this takes far longer than the two
+  // seconds after which progress is shown.
   const TempFolder folder;
   (void)folder.file("heart.yaml", R"(palpate: 1
 length: mm

@@ -1,5 +1,5 @@
-// `palpate bench contact`: errors within bounds on scenes of known truth, and well-formed files.
-// Times are figures to print, never to assert.
+// `palpate bench contact`: errors within bounds on scenes whose truth is known, and well-formed
+// files. Times are printed, never asserted.
 
 #include <iterator>
 #include <map>
@@ -19,7 +19,7 @@ const Json& resultOf(const Json& report, const std::string& scene, const std::st
   return none;
 }
 
-/// Once along the path and no more, unless said otherwise.
+/// A single run along the path, unless the arguments say otherwise.
 std::vector<std::string> quickBench(std::vector<std::string> more) {
   std::vector<std::string> all = {"bench",   "contact", "--repeat", "1",
                                   "--paced", "0",       "--cold",   "0"};
@@ -27,7 +27,7 @@ std::vector<std::string> quickBench(std::vector<std::string> more) {
   return all;
 }
 
-/// The table's row of that scene, cut at spaces.
+/// The table's row of that scene, split at spaces.
 std::vector<std::string> textRow(const std::string& text, const std::string& heading,
                                  const std::string& scene, const std::string& renderer) {
   bool is_here = false;
@@ -57,8 +57,8 @@ TEST(Bench, NamesTheMachineAndJudgesTheSphere) {
   EXPECT_EQ(good["ticks"], 15394);
   EXPECT_EQ(good["judged"], 15394);
   EXPECT_EQ(good["missed"], 0);
-  // Analytic contact is asked to be exact to 1e-6 degree and 1e-6 of the magnitude; the true turn
-  // is 0.244 degree.
+  // Analytic contact has to be exact to 1e-6 degree and 1e-6 of the magnitude; the true turn is
+  // 0.244 degree.
   EXPECT_LE(good["direction_error_degrees"]["max"].get<double>(), 1e-6);
   EXPECT_LE(good["magnitude_error"]["max"].get<double>(), 1e-6);
   EXPECT_LE(good["largest_turn_degrees"].get<double>(), 0.245);
@@ -102,7 +102,7 @@ TEST(Bench, CornersOfThreeCurvedWallsAreAsTheOracleHasThem) {
                                        "three-balls", "--scene", "three-hollow"})));
   for (const char* scene : {"three-balls", "three-hollow"}) {
     const Json& row = resultOf(report, scene, "constraint");
-    // Every sixteenth tick is asked, and none of these has two answers.
+    // The oracle judges every sixteenth tick, and none of these has two answers.
     EXPECT_NEAR(row["judged"].get<double>(), row["ticks"].get<double>() / 16.0, 1.0) << scene;
     EXPECT_EQ(row["missed"], 0) << scene;
     EXPECT_LE(row["force_error"]["max"].get<double>(), 1e-6) << scene;
@@ -117,8 +117,8 @@ TEST(Bench, EveryTickAboutATipIsJudged) {
     const Json& row = resultOf(report, scene, "constraint");
     EXPECT_EQ(row["judged"], row["ticks"]) << scene;
     EXPECT_EQ(row["missed"], 0) << scene;
-    // Wherever the proxy is, the hand does not outrun it: its force is what the formula has, but
-    // for what is still to slide.
+    // Wherever the proxy is, the hand does not outrun it: its force is that of the formula, except
+    // for the part that still has to slide.
     EXPECT_LE(row["magnitude_error"]["max"].get<double>(), 0.01) << scene;
   }
 }
@@ -138,8 +138,8 @@ TEST(Bench, WhatIsNotJudgedMeasuredOrSaidIsADashAndNoNumber) {
   EXPECT_LE(unsettled["longest_run"], unsettled["ticks"]);
   EXPECT_NEAR(unsettled["share"].get<double>() * lump["ticks"].get<double>(),
               unsettled["ticks"].get<double>(), 1e-6);
-  // Of a scene without composite walls the paper's renderer has forces, and does not say whether it
-  // settled.
+  // In a scene without composite walls the paper's renderer has forces, but does not report whether
+  // it settled.
   EXPECT_TRUE(resultOf(report, "groove", "paper")["unsettled"].is_null());
 
   const TempFolder folder;
@@ -176,10 +176,10 @@ TEST(Bench, WhatIsNotJudgedMeasuredOrSaidIsADashAndNoNumber) {
                          heading[i].starts_with("paced") || heading[i].starts_with("cold");
     EXPECT_EQ(cells[i].empty(), is_open) << heading[i] << " = " << cells[i];
   }
-  // In the picture of error against time, what has no error has no mark.
+  // A row without an error has no mark in the picture of error over time.
   const std::string svg = textOf(folder.path() + "/a.svg");
   EXPECT_NE(svg.find(">2</text>"), std::string::npos);
-  EXPECT_EQ(svg.find(">2</text>"), svg.rfind(">2</text>"));  // in the key alone
+  EXPECT_EQ(svg.find(">2</text>"), svg.rfind(">2</text>"));  // only in the key
 }
 
 TEST(Bench, TicksAtTheirPaceAndColdOnesStandBesideTheHot) {
@@ -192,7 +192,7 @@ TEST(Bench, TicksAtTheirPaceAndColdOnesStandBesideTheHot) {
   EXPECT_EQ(report["paced_ticks"], 40);
   EXPECT_EQ(report["cold_ticks"], 3);
   const Json& row = resultOf(report, "groove", "constraint");
-  // Ten stretches of four; and one for each third of the path.
+  // Ten stretches of four ticks; and a cold tick for each third of the path.
   EXPECT_GE(row["paced_tick_ns"]["ticks"], 40);
   EXPECT_LE(row["paced_tick_ns"]["ticks"], 44);
   EXPECT_GE(row["cold_tick_ns"]["ticks"], 3);
@@ -236,7 +236,7 @@ TEST(Bench, WritesATableAndAPlot) {
   }
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 
-  // Nothing is overwritten unasked.
+  // No file is overwritten without --force.
   EXPECT_EQ(runPalpate(arguments, folder.path()).exit_code, 1);
   EXPECT_EQ(textOf(folder.path() + "/a.svg"), svg);
 }
@@ -260,7 +260,7 @@ TEST(Bench, WrongUseExitsTwo) {
 }
 
 TEST(Bench, HelpNamesEveryScene) {
-  // An unknown name far from all lists them.
+  // An unknown name that resembles none of the scenes lists them all.
   const std::string list = runPalpate({"bench", "contact", "--scene", "qqqqqqqqqq"}).err;
   const std::string help = runPalpate({"bench", "--help"}).out;
   const std::size_t at = list.find("it has ");

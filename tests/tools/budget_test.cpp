@@ -31,10 +31,10 @@ class DeviceInTheLoop : public ::testing::Test {
 };
 
 TEST_F(DeviceInTheLoop, ATouchMovesTheDeviceByTheHandAndTheWall) {
-  // A relaxed hand wants to go 4 mm into the wall. At rest its spring, 250 N/m, its grip, 800 N/m,
-  // and the wall, 1000 N/m, are in series: the wall takes 1 / 1000 of 4 mm / (1 / 250 + 1 / 800 + 1
-  // / 1000), 0.64 mm and 0.64 N; the device's friction, 0.3 N, and the encoder's step, 9 um, may
-  // hold it off that by the share of the wall.
+  // A relaxed hand aims 4 mm into the wall. At rest its spring, 250 N/m, its grip, 800 N/m, and the
+  // wall, 1000 N/m, are in series: the wall takes 1 / 1000 of 4 mm / (1 / 250 + 1 / 800 + 1 /
+  // 1000), 0.64 mm and 0.64 N. The device's friction, 0.3 N, and the encoder's step, 9 um, may keep
+  // it off this place by the wall's share of them.
   const CommandResult result =
       run({"touch", "wall.yaml", "--press", "0,0,0", "--depth", "4", "--hold", "2", "--device",
            "omega_3", "--trace", "trace.csv", "--json"});
@@ -55,7 +55,7 @@ TEST_F(DeviceInTheLoop, ATouchMovesTheDeviceByTheHandAndTheWall) {
   ASSERT_EQ(std::sscanf(row.c_str(), "%lf,%lf,%lf,%lf", &t, &x, &y, &z), 4) << row;
   EXPECT_NEAR(z, -0.64e-3, 0.3 / 1190.0 + 9e-6);
   EXPECT_LT(z, -0.3e-3);
-  // Of the encoder.
+  // Positions are multiples of the encoder's step.
   EXPECT_NEAR(z / 9e-6, std::round(z / 9e-6), 1e-6);
 }
 
@@ -69,7 +69,7 @@ TEST_F(DeviceInTheLoop, TheSameTouchGivesTheSameTrace) {
   second.emplace_back("b.npy");
   ASSERT_EQ(run(first).exit_code, 0);
   ASSERT_EQ(run(second).exit_code, 0);
-  // Felt anew, a record of the device's readings is the same, bit for bit.
+  // Replayed, a record of the device's readings gives the same result, bit for bit.
   EXPECT_EQ(run({"replay", "a.npy"}).exit_code, 0);
   EXPECT_EQ(run({"replay", "b.npy"}).exit_code, 0);
 }
@@ -77,7 +77,7 @@ TEST_F(DeviceInTheLoop, TheSameTouchGivesTheSameTrace) {
 TEST_F(DeviceInTheLoop, ATouchWarnsOfWhatTheDeviceCannotHold) {
   const CommandResult result = run(
       {"touch", "wall.yaml", "--press", "0,0,0", "--device", "touch", "--hand", "none", "--json"});
-  // Nobody holds it: it hovers where it was put, and the press meets nothing.
+  // Nobody holds the device: it hovers where it was put, and the press meets nothing.
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.err.find("wall.stiffness, 1000 N/m at the hand, is 31.2 times its budget"),
             std::string::npos)
@@ -143,7 +143,7 @@ TEST_F(DeviceInTheLoop, WrongUsesAreSaid) {
   }
 }
 
-/// What a scene file has to say of itself.
+/// The remark that a scene file must contain about itself.
 std::string remarkOf(const std::vector<std::string>& names) {
   if (names.empty())
     return "# In a relaxed hand at 1 kHz within the stability budget of every device preset.";

@@ -1,4 +1,4 @@
-// palpate check: what it finds in meshes and grids, and its exit code.
+// palpate check: its findings in meshes and grids, and its exit code.
 
 #include <cmath>
 #include <cstdlib>
@@ -79,7 +79,8 @@ TEST(Check, ASoundMeshIsAYes) {
 
 TEST(Check, WhatABakeMendsIsToldAndIsAYes) {
   const TempFolder folder;
-  // A closed cube, one inside out with a triangle more, and one that passes through the first.
+  // A closed cube, one that is inside out and has an extra triangle, and one that passes through
+  // the first.
   (void)folder.file("many.obj", cube(10.0, 0.0, 1) + cube(4.0, 30.0, 9, false) + "f 9 11 12\n" +
                                     cube(6.0, 5.0, 17));
   const Checked c = checked(folder, {"many.obj", "--voxel", "0.5"});
@@ -92,7 +93,7 @@ TEST(Check, WhatABakeMendsIsToldAndIsAYes) {
   EXPECT_TRUE(has("mesh.doubled")) << c.text;
   EXPECT_TRUE(has("mesh.self_intersection")) << c.text;
   EXPECT_EQ(c.file["parts"], 3);
-  // One solid of both: 1000 + 216 - 144 mm^3, and the one apart.
+  // One solid made of both, 1000 + 216 - 108 mm^3, and the separate one.
   EXPECT_NEAR(c.file["bake"]["volume_m3"], (1000.0 + 216.0 - 108.0 + 64.0) * 1e-9, 25e-9) << c.text;
 }
 
@@ -155,8 +156,8 @@ TEST(Check, SeveralFilesAndBadOnes) {
 
 TEST(Check, PlacesAreInRasWhicheverWayTheAxesOfTheMeshRun) {
   const TempFolder folder;
-  // A cube about (20, 0, 0) without its last two triangles, whose hole is at y = 5 in the file's
-  // own axes.
+  // A cube about (20, 0, 0) without its last two triangles; its hole is at y = 5 in the file's own
+  // axes.
   (void)folder.file("open.obj", cube(10.0, 20.0, 1, true, 10));
   const auto hole = [&](const std::vector<std::string>& arguments) {
     const Json file = checked(folder, arguments).file;
@@ -189,7 +190,7 @@ TEST(Check, GridsOfOthers) {
   const struct {
     std::vector<std::string> arguments;
     int exit_code;
-    std::string finding;  // code of the first, or of why it is refused
+    std::string finding;  // code of the first finding, or of the refusal
   } cases[] = {
       {{"ball.vdb"}, 0, ""},
       {{"half.vdb"}, 0, ""},

@@ -1,5 +1,5 @@
-// palpate convert, its files read by others: meshes from their bytes and images by nibabel
-// (file_oracle.py), grids made by python3-openvdb (tests/vdb/vdb_interop.py).
+// palpate convert: independent code reads its files (file_oracle.py: meshes from their bytes,
+// images by nibabel), and it converts grids made by python3-openvdb (tests/vdb/vdb_interop.py).
 
 #include <cmath>
 #include <cstdio>
@@ -102,7 +102,7 @@ TEST(ConvertFiles, DistancesAreMillimetersInAnImage) {
   }
 }
 
-/// Two labels that touch, a ball cut by a plane, in a slanted, stretched image.
+/// Two labels that touch, a ball cut by a plane, in an oblique, stretched image.
 vdb::test::NiftiFile slanted() {
   vdb::test::NiftiFile file;
   file.dim = {40, 44, 30};
@@ -143,8 +143,8 @@ TEST(ConvertFiles, ALabelScanBecomesAGridForEachLabel) {
     EXPECT_GT(mesh.volume, 0.4 * ballVolume(15.0));
     sum += mesh.volume;
   }
-  // A third of a voxel of 1 x 1 x 1.5 mm all around: how exact labels are is tested with them;
-  // here, that all of them arrive, in the right size.
+  // Within a third of a voxel of 1 x 1 x 1.5 mm all around: the accuracy of labels is tested
+  // elsewhere; here, that all of them arrive, in the right size.
   EXPECT_NEAR(sum, ballVolume(15.0), 0.06 * ballVolume(15.0));
 }
 
@@ -163,7 +163,7 @@ TEST(ConvertFiles, AMaskBecomesAGrid) {
     EXPECT_NEAR(meshFile(folder.path("mask.stl")).volume, ballVolume(15.0),
                 0.04 * ballVolume(15.0));
   }
-  // The place in the world goes through: the middle of the image's voxel (20, 22, 15).
+  // The place in the world is preserved: the middle of the image's voxel (20, 22, 15).
   (void)converted(folder, {"mask.nii", "-o", "ball.nii.gz", "--above", "0.5"});
   const std::vector<double> n = told("image", folder.path("ball.nii.gz"));
   ASSERT_EQ(n.size(), 18U);
@@ -188,7 +188,7 @@ class ConvertGrids : public ::testing::Test {
   }
   static const TempFolder& folder() { return *home; }
 
-  /// `share` of the volume, `far` [mm] at its ends.
+  /// `share`: tolerance of the volume; `far` [mm]: that of its ends.
   static void expectBall(const std::string& name, double share, double far = 0.1) {
     const MeshFile mesh = meshFile(folder().path(name));
     EXPECT_EQ(mesh.open_edges, 0.0) << name;
@@ -200,7 +200,7 @@ class ConvertGrids : public ::testing::Test {
     }
   }
 
-  /// `name`.vdb becomes a grid that can be touched, and that a mesh of the ball.
+  /// `name`.vdb becomes a grid that can be touched, and that grid a mesh of the ball.
   static void expectGrid(const std::string& name, const std::vector<std::string>& options,
                          double share, double far = 0.1) {
     SCOPED_TRACE(name);
@@ -233,8 +233,8 @@ TEST_F(ConvertGrids, TurnedMirroredAndStretchedGridsAreStraightened) {
 
 TEST_F(ConvertGrids, DensitiesAndMasksGetASurface) {
   expectGrid("fog", {"--above", "0.5"}, 0.015);
-  // Voxels of a mask end half a voxel before the ball where it is widest, at steps of a voxel of
-  // 0.5 mm.
+  // The voxels of a mask end half a voxel before the ball where it is widest, in steps of a voxel
+  // of 0.5 mm.
   expectGrid("mask", {"--labels", "1"}, 0.05, 0.35);
 }
 
@@ -256,7 +256,7 @@ TEST_F(ConvertGrids, TurnedGridsBecomeMeshesAndTurnedImages) {
     EXPECT_NEAR(n[3], 1.0, 0.02);
     EXPECT_NEAR(n[4], 2.0, 0.02);
     EXPECT_NEAR(n[5], 3.0, 0.02);
-    // The axes as they were, not resampled: rows of the affine.
+    // The axes are unchanged, without resampling: compare the rows of the affine.
     const double c = 0.5 * std::cos(std::numbers::pi / 6.0);
     const double first = name == "turned" ? c : (name == "mirrored" ? -0.5 : 0.5);
     EXPECT_NEAR(n[6], first, 1e-6);
@@ -266,7 +266,7 @@ TEST_F(ConvertGrids, TurnedGridsBecomeMeshesAndTurnedImages) {
 }
 
 TEST_F(ConvertGrids, AnInsideThatIsNotMarkedIsMarked) {
-  // Not a second wall where the band ends inside.
+  // There must be no second wall where the band ends inside.
   const CommandResult made =
       runPalpate({"convert", "hollow.vdb", "-o", "marked.stl"}, folder().path());
   EXPECT_EQ(made.exit_code, 0) << made.err;
@@ -280,7 +280,7 @@ TEST_F(ConvertGrids, AnInsideThatIsNotMarkedIsMarked) {
     EXPECT_NEAR(n[2], ballVolume(6.0), 0.02 * ballVolume(6.0)) << name;
     EXPECT_LT(n[0], -1.4) << name;  // the middle is 3 voxels inside
   }
-  // A ball with a hollow of 2.5 mm: the wall between is inside, the hollow is not.
+  // A ball with a hollow of 2.5 mm: the wall around the hollow is inside, the hollow is not.
   (void)converted(folder(), {"nested.vdb", "-o", "nested.stl"});
   EXPECT_NEAR(meshFile(folder().path("nested.stl")).volume, ballVolume(6.0) - ballVolume(2.5),
               0.02 * ballVolume(6.0));
@@ -289,7 +289,7 @@ TEST_F(ConvertGrids, AnInsideThatIsNotMarkedIsMarked) {
   EXPECT_EQ(whole.err.find("inside"), std::string::npos) << whole.err;
 }
 
-/// A line for each active voxel of a grid: place and value, told by python3-openvdb.
+/// A line for each active voxel of a grid: place and value, printed by python3-openvdb.
 std::string bandOf(const std::string& path) {
   const std::string line =
       "/usr/bin/python3 -c \"import pyopenvdb, sys; g = pyopenvdb.readAll(sys.argv[1])[0][0]; "

@@ -1,4 +1,4 @@
-// palpate convert: grids, scenes and meshes into meshes, images and grids.
+// palpate convert: grids, scenes and meshes to meshes, images and grids.
 
 #include <cmath>
 #include <filesystem>
@@ -17,7 +17,7 @@ layers:
 )";
 const double kVolume = 4.0 / 3.0 * std::numbers::pi * std::pow(0.015, 3.0);  // [m^3]
 
-/// What `info` says of a file.
+/// The output of `info` for a file.
 Json described(const TempFolder& folder, const std::string& name, const std::string& units = "mm") {
   const CommandResult result =
       runPalpate({"info", name, "--units", units, "--json"}, folder.path());
@@ -35,7 +35,7 @@ TEST(Convert, ASceneBecomesAMeshOfEveryFormat) {
     EXPECT_EQ(json["schema"], "palpate.convert/1");
     EXPECT_EQ(json["unit"], extension == "glb" ? "m" : "mm");
     EXPECT_TRUE(json["closed"]);
-    // Triangles of a ball of 15 voxels lie some 1e-3 of its radius below it.
+    // Triangles of a ball of 15 voxels are some 1e-3 of its radius below its surface.
     EXPECT_NEAR(json["volume_m3"], kVolume, 0.01 * kVolume);
     const Json info = described(folder, name, json["unit"]);
     EXPECT_EQ(info["triangles"], json["triangles"]);
@@ -80,7 +80,8 @@ TEST(Convert, GltfIsMetersAsItsStandardSays) {
   const TempFolder folder;
   (void)folder.file("ball.yaml", kBall);
   (void)converted(folder, {"ball.yaml", "-o", "ball.glb", "--voxel", "1"});
-  // Its own writer's file comes back in its own size, unasked, as a grid and as another mesh.
+  // A file that the command wrote comes back in its own size without an option, as a grid and as
+  // another mesh.
   const CommandResult back =
       runPalpate({"convert", "ball.glb", "-o", "back.stl", "--json"}, folder.path());
   ASSERT_EQ(back.exit_code, 0) << back.err;
@@ -96,7 +97,7 @@ TEST(Convert, GltfIsMetersAsItsStandardSays) {
   const CommandResult query =
       runPalpate({"query", "scene.yaml", "--at", "0,0,0", "--json"}, folder.path());
   ASSERT_EQ(query.exit_code, 0) << query.err;
-  // Said otherwise, it counts: a file of millimeters that is not a proper glTF.
+  // --units overrides that: a file in millimeters is not a proper glTF.
   const Json said = converted(folder, {"ball.glb", "--units", "mm", "-o", "small.stl"});
   EXPECT_NEAR(said["volume_m3"], 1e-9 * kVolume, 1e-11 * kVolume);
 }
@@ -109,7 +110,7 @@ TEST(Convert, AnImageOfDistancesBecomesTheGridItWas) {
       {"convert", "ball.nii.gz", "--distances", "-o", "back.stl", "--json"}, folder.path());
   ASSERT_EQ(back.exit_code, 0) << back.err;
   EXPECT_NEAR(parseOnly(back)["volume_m3"], kVolume, 0.005 * kVolume);
-  // --above 0 takes the outside, and says so.
+  // --above 0 takes the outside, and a note says so.
   const CommandResult above = runPalpate(
       {"convert", "ball.nii.gz", "--above", "0", "-o", "outside.stl", "--json"}, folder.path());
   EXPECT_NE(above.err.find("--distances takes the inside"), std::string::npos) << above.err;

@@ -1,5 +1,5 @@
-// Scans that Debian packages carry, through the command: what it imports, bakes and lets feel,
-// against loops over the voxels themselves.
+// Scans from Debian packages, through the command: its imports, bakes and touches are compared with
+// loops over the voxels themselves.
 
 #include "vdb/debian_scans.h"
 
@@ -16,7 +16,7 @@ using vdb::Image;
 using vdb::test::HeadCt;
 using vdb::test::mricron;
 
-/// Of the way straight in from `from`: where something is felt first, and where it ends.
+/// On the way straight in from `from`: the tick that first feels something, and the last one.
 std::pair<TracedTick, TracedTick> wayIn(const std::vector<TracedTick>& ticks, const Vec3& from,
                                         const Vec3& to) {
   const Vec3 way = glm::normalize(to - from);
@@ -59,7 +59,8 @@ TEST(DebianScans, RegionsOfAnAtlasAreItsVoxelsUnderTheirNames) {
     EXPECT_EQ(region["voxels"], wanted.at(name)) << name;
     EXPECT_NEAR(region["volume_m3"].get<double>(), static_cast<double>(wanted.at(name)) * 1e-9,
                 1e-15);
-    // x is right: what the table calls left lies left of the middle, but for a few voxels.
+    // x is to the right: regions that the table calls left are left of the middle, except for a few
+    // voxels.
     const Json& bounds = region["bounds_m"];
     const double middle = bounds["lo"][0].get<double>() + bounds["hi"][0].get<double>();
     if (name.ends_with("_L") || name.ends_with("_R")) {
@@ -70,7 +71,7 @@ TEST(DebianScans, RegionsOfAnAtlasAreItsVoxelsUnderTheirNames) {
   EXPECT_EQ(sides, 108);
 }
 
-// A voxelized nucleus of 1 mm voxels as a solid wall of 200 N/m, pressed on from six sides.
+// A nucleus of 1 mm voxels as a solid wall of 200 N/m, pressed from six sides.
 TEST(DebianScans, ANucleusIsFeltWhereItsVoxelsBegin) {
   constexpr double kStiffness = 200.0;  // [N/m]
   constexpr int kPutamen = 73;
@@ -94,19 +95,19 @@ tissues:
   struct Ray {
     Vec3 from{0.0};
     Vec3 to{0.0};
-    double face = 0.0;  ///< from `from` to the first voxel
+    double face = 0.0;  ///< distance from `from` to the first voxel
   };
   std::vector<Ray> rays;
   std::vector<Vec3> points;
   for (const int side : {0, 2, 1, 3, 4, 5}) {
     Vec3 way(0.0);
     way[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
-    // Along an axis from outside; faces of voxels are at halves of a millimeter.
+    // Along an axis from outside; faces of voxels are at half millimeters.
     Ray ray{middle - 44.5 * way, Vec3(0.0), 0.0};
     while (!is_in(ray.from + (ray.face + 0.5) * way)) ray.face += 1.0;
     ray.to = ray.from + (ray.face + 2.5) * way;
     rays.push_back(ray);
-    // The last but one is below and the last above: around.
+    // The last side but one is below and the last one above: go around in between.
     if (side == 5) points.push_back(middle + Vec3(60, 0, 0));
     points.insert(points.end(), {ray.from, ray.to, ray.from});
   }
@@ -116,12 +117,12 @@ tissues:
     const auto [first, last] = wayIn(ticks, ray.from, ray.to);
     const double along = glm::dot(first.hand - ray.from, way) - ray.face;
     const double across = along * glm::dot(glm::normalize(first.force), -way);
-    // The spring, to the digits of the trace, and straight out of the wall.
+    // The spring law holds to the digits of the trace, and the force is straight out of the wall.
     const Vec3 out = last.proxy - last.hand;
     const double depth = glm::length(last.force) / kStiffness * 1e3;
     EXPECT_NEAR(depth, glm::length(out), 1e-4);
     EXPECT_GT(glm::dot(last.force, out), 0.9999 * glm::length(last.force) * glm::length(out));
-    // The center of the nearest voxel outside.
+    // Distance to the center of the nearest voxel outside.
     double nearest = 1e9;
     for (int n = 0; n < 17 * 17 * 17; ++n) {
       const Vec3 at = glm::round(last.hand) + Vec3(n % 17, n / 17 % 17, n / 289) - 8.0;
@@ -129,11 +130,11 @@ tissues:
     }
     std::printf("  wall off %+.2f mm along, %+.2f across; depth %.2f mm, nearest outside %.2f mm\n",
                 along, across, depth, nearest);
-    // Centers stay on their side of a smooth wall: what is off across is half a voxel, and a little
-    // where the wall bends.
+    // Centers stay on their side of a smooth wall: across, the wall may be off by half a voxel, and
+    // slightly more where it bends.
     EXPECT_NEAR(across, 0.0, 0.7);
-    // So K times the depth: not beyond the nearest center outside, and not a voxel's diagonal in
-    // front of it.
+    // So the depth is not beyond the nearest center outside, and not more than a voxel's diagonal
+    // in front of it.
     EXPECT_LT(depth, nearest + 0.15);
     EXPECT_GT(depth, nearest - std::sqrt(3.0) / 2.0);
   }
@@ -142,7 +143,8 @@ tissues:
 TEST(HeadCt, ASkullHasTheVolumeThatInVesaliusGivesIt) {
   const HeadCt ct = vdb::test::readHeadCt();
   const TempFolder folder;
-  // The part that holds bone, by the mask that InVesalius kept, with some air around.
+  // The part of the image that holds bone, by the mask stored by InVesalius, with some air around
+  // it.
   std::array<int, 3> lo = ct.size;
   std::array<int, 3> hi{};
   for (int k = 0; k < ct.size[2]; ++k) {
@@ -159,19 +161,19 @@ TEST(HeadCt, ASkullHasTheVolumeThatInVesaliusGivesIt) {
     hi[a] = std::min(hi[a] + 3, ct.size[a] - 1);
   }
   (void)vdb::test::writePart(ct, lo, hi, folder);
-  // Whole numbers: from 226 on is above 225.5. Voxels of 2 mm, for speed.
+  // Values are integers: 226 and more are above 225.5. Voxels of 2 mm, for speed.
   (void)run(folder, {"bake", "head.mhd", "--above", "225.5", "--keep", "all", "--voxel", "2", "-o",
                      "skull.vdb", "--json"});
   const Json grid = run(folder, {"check", "skull.vdb", "--json"})["files"][0]["grids"][0];
   const double volume = grid["volume_m3"].get<double>() * 1e9;
   std::printf("  %.1f ml, InVesalius %.1f ml\n", volume * 1e-3, ct.surface_volume * 1e-3);
-  // Two iso-surfaces of the same voxels, one smoothed and the other in coarse voxels: 0.2 % apart,
-  // 0.1 % in fine ones.
+  // Two iso-surfaces of the same voxels, one smoothed and the other in coarse voxels: they differ
+  // by 0.2 %, in fine voxels by 0.1 %.
   EXPECT_NEAR(volume / ct.surface_volume, 1.0, 0.005);
   EXPECT_TRUE(grid["findings"].empty()) << grid;
 }
 
-// Seven slices above the eyes, pressed on along rows and columns of voxels.
+// Seven slices above the eyes, pressed along rows and columns of voxels.
 TEST(HeadCt, ASkullIsFeltWhereItsHounsfieldUnitsCrossTheThreshold) {
   constexpr double kThreshold = 300.0;
   constexpr double kStiffness = 800.0;  // [N/m]
@@ -205,7 +207,7 @@ layers:
     while (value(at) <= kThreshold) at[axis] += step;
     std::array<int, 2> before = at;
     before[axis] -= step;
-    // Linear between the last voxel below and the first above.
+    // Linear interpolation between the last voxel below and the first one above.
     const double share = (kThreshold - value(before)) / (value(at) - value(before));
     const Vec3 voxel = world(at) - world(before);
     walls.push_back(world(before) + share * voxel);
@@ -223,15 +225,15 @@ layers:
     const double depth = glm::length(last.hand - last.proxy);
     std::printf("  wall off %+.2f voxel, %.2f mm deep, %.3f N\n", off, depth,
                 glm::length(last.force));
-    // A cubic spline bends a little away from the line between the two; a tick is a twentieth of a
-    // voxel.
+    // A cubic spline deviates a little from the line between the two voxels; a tick is a twentieth
+    // of a voxel.
     EXPECT_NEAR(off, 0.0, 0.25);
     EXPECT_NEAR(glm::length(last.force), kStiffness * depth * 1e-3, 1e-5);
-    // No deeper than straight back; these walls slant by less than 45 degrees.
+    // No deeper than for a straight press; these walls slant by less than 45 degrees.
     EXPECT_LT(depth, 1.5 + 0.25 * size);
     EXPECT_GT(depth, (1.5 - 0.25 * size) * std::sqrt(0.5));
-    // What holds the probe is where bone begins: a quarter of a voxel out there is less than the
-    // threshold, as much in more.
+    // The wall that holds the probe is where bone begins: a quarter of a voxel outwards the value
+    // is below the threshold, as far inwards it is above.
     const Vec3 out = glm::normalize(last.proxy - last.hand) * 0.25 * size;
     EXPECT_LT(image.interpolate((last.proxy + out) * 1e-3), kThreshold);
     EXPECT_GT(image.interpolate((last.proxy - out) * 1e-3), kThreshold);

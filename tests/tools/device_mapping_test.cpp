@@ -1,4 +1,4 @@
-// A device with axes, a scale and a force of its own, through the command.
+// A device with its own axes, scale and force scale, through the command.
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ TEST_F(MappedDevice, ItsPathIsFeltAsThatOfTheWorldIs) {
     of_world.precision(17);
     of_device.precision(17);
     of_world << t << "," << x << "," << y << "," << z << "\n";
-    // Back by a turn of -90 degrees about z: (x, y) becomes (y, -x); and four times as far.
+    // Converted back by a rotation of -90 degrees about z, (x, y) to (y, -x), and a factor of four.
     of_device << t << "," << 4.0 * (y - 0.002) << "," << -4.0 * (x - 0.001) << ","
               << 4.0 * (z + 0.003) << "\n";
     world += of_world.str();
@@ -59,9 +59,9 @@ TEST_F(MappedDevice, ItsPathIsFeltAsThatOfTheWorldIs) {
     const auto one = cellsOf(by_world[i]);
     const auto other = cellsOf(by_device[i]);
     for (std::size_t k = 0; k < 10; ++k) {
-      // Rounding of positions of 0.2 m is 3e-17 m; a way into a wall ends at a share of its feature
-      // of 40 mm that this may change by as much again and again: 1e-12 m, times 1.5 kN/m of the
-      // wall or 4 N s/m over a millisecond.
+      // Rounding of positions of 0.2 m is 3e-17 m. A step into a wall ends within a share of the
+      // wall's feature size of 40 mm, which may add as much at each step: 1e-12 m, times 1.5 kN/m
+      // of the wall or 4 N s/m over a millisecond.
       const double allowed = k < 4 ? 1e-15 : k < 7 ? 1e-12 : 4e-9;
       EXPECT_NEAR(std::stod(one[k]), std::stod(other[k]), allowed)
           << "row " << i << " column " << k;
@@ -79,7 +79,7 @@ TEST_F(MappedDevice, ExplainSaysHowItLiesAndWhatItsHandFeels) {
   EXPECT_EQ(device["scale"], 0.25);
   EXPECT_EQ(device["force"], 2.0);
   EXPECT_EQ(device["stiffness_at_hand"], 0.5);
-  // Its x points along the world's y, its y against the world's x.
+  // The device's x is the world's y, and its y the world's -x.
   const std::vector<std::vector<double>> axes = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -1,5 +1,5 @@
 // `palpate devices`, `palpate doctor`, `palpate bench servo`: well-formed reports, whatever is
-// plugged in here. What this machine grants and how late it wakes is not asserted.
+// plugged in here. The rights on this machine, and its latency, are not asserted.
 
 #include <set>
 
@@ -12,7 +12,7 @@ TEST(DeviceVerbs, TheListNamesEveryWayToADeviceAndWhatIsNotVerified) {
   const Json report = parseOnly(runPalpate({"devices", "--json"}));
   std::set<std::string> names;
   for (const Json& device : report["devices"]) {
-    // Of an input device that is plugged in, with its node.
+    // For a connected input device, with its node.
     const std::string name = device["name"];
     names.insert(name.substr(0, name.find(':')));
     EXPECT_NE(device["notice"].get<std::string>().find("unverified on hardware"),
@@ -22,7 +22,7 @@ TEST(DeviceVerbs, TheListNamesEveryWayToADeviceAndWhatIsNotVerified) {
   EXPECT_EQ(names, (std::set<std::string>{"falcon", "inverse3", "hd", "dhd", "evdev"}));
 }
 
-/// What stands for Force Dimension's library: its device rests at its origin.
+/// The stand-in for Force Dimension's library: its device rests at its origin.
 std::string fakeLibrary() { return test::buildFolder() + "/tests/libpalpate_fake_dhd.so"; }
 
 TEST(DeviceVerbs, TheTableOfStatesIsThatOfTheLoop) {
@@ -49,7 +49,7 @@ TEST(DeviceVerbs, ADeviceThatIsNotThereIsADeviceErrorWithARemedy) {
   EXPECT_EQ(hd.exit_code, 4);
   EXPECT_EQ(parseOnly(hd)["error"]["code"], "device.library");
   EXPECT_FALSE(parseOnly(hd)["error"]["hint"].is_null());
-  // Port 1 of this machine has no service.
+  // No service listens on port 1 of this machine.
   const CommandResult inverse =
       runPalpate({"devices", "--test", "inverse3", "--service", "127.0.0.1:1", "--json"});
   EXPECT_EQ(inverse.exit_code, 4);
@@ -75,8 +75,8 @@ TEST(DeviceVerbs, AFirmwareThatIsNoneIsRefusedBeforeAnyDeviceIsLookedFor) {
   EXPECT_EQ(parseOnly(result)["error"]["code"], "falcon.firmware");
 }
 
-/// The loop stood still because this machine was busy: the only fault that a device at rest may end
-/// with here.
+/// Whether the loop stalled because this machine was busy: the only fault with which a device at
+/// rest may end here.
 bool stoodStill(const std::string& text) {
   return text.find("the servo loop stood still for too long") != std::string::npos;
 }

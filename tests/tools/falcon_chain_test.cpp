@@ -1,9 +1,9 @@
-// `palpate touch` with a Falcon that is not there, behind the libusb that everybody uses: from the
-// command line to the kernel.
+// `palpate touch` with an emulated Falcon behind the usual libusb: everything from the command line
+// to the kernel.
 
-// The hand of the emulated Falcon goes along a path, held by a spring of 250 N/m.
+// The hand of the emulated Falcon follows a path, held by a spring of 250 N/m.
 
-// A sanitizer wants to be loaded before all others itself.
+// A sanitizer's runtime must itself be loaded before all other libraries.
 #if defined(PALPATE_LIBUSB) && !defined(__SANITIZE_ADDRESS__)
 
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// The `count` numbers from column `first` on of each row after `head` rows.
+/// The `count` numbers from column `first` on, of each row after the first `head` rows.
 std::vector<Numbers> columns(const std::string& file, std::size_t head, std::size_t first,
                              std::size_t count) {
   std::vector<Numbers> out;
@@ -40,12 +40,12 @@ double distance(const Numbers& a, const Numbers& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// How a scene's `device` is turned: about `axis`, by the right hand.
+/// Rotation of a scene's `device` about `axis`, by the right-hand rule.
 struct Turn {
   Vec3 axis{0.0, 0.0, 1.0};
   double degrees = 0.0;
 
-  /// A force of the world, in the device's frame.
+  /// A force in the world's frame, converted to the device's frame.
   [[nodiscard]] Numbers toDevice(const Numbers& force) const {
     const Vec3 f(force[0], force[1], force[2]);
     const Vec3 k = glm::normalize(axis);
@@ -56,7 +56,7 @@ struct Turn {
   }
 };
 
-/// Variables of the environment, for as long as it lives.
+/// Sets environment variables as long as it exists.
 class Environment {
  public:
   explicit Environment(std::vector<std::pair<std::string, std::string>> variables)
@@ -75,8 +75,8 @@ class Environment {
 
 class FalconChain : public ::testing::Test {
  protected:
-  /// The command with a Falcon on descriptor 100, in the Falcon's time. At command `at` the process
-  /// gets `signal`, or the cable is pulled if that is 0.
+  /// Runs the command with a Falcon on descriptor 100, in the Falcon's time. At command `at` the
+  /// process gets `signal`, or the cable is unplugged if that is 0.
   CommandResult run(std::vector<std::string> arguments, std::size_t at = 1'000'000,
                     int signal = 0) {
     if (arguments.front() == "touch") arguments.insert(arguments.end(), {"--device", "falcon"});
@@ -96,9 +96,9 @@ class FalconChain : public ::testing::Test {
     return out;
   }
 
-  /// Feels `scene` with the Falcon for `seconds`, at one place with `most` [N] or more, and again
-  /// with the virtual device on the same way of the hand: the motors must have given the virtual
-  /// device's forces. Its report.
+  /// Feels `scene` with the Falcon for `seconds`, reaching `most` [N] or more somewhere, and again
+  /// with the virtual device on the same path of the hand: the motors must have given the virtual
+  /// device's forces. Returns the report.
   Json feel(const std::string& scene, const std::string& seconds, double most,
             const Turn& turn = {}) {
     const CommandResult result = run({"touch", scene, "--seconds", seconds, "--trace", "felt.csv",
@@ -131,13 +131,13 @@ class FalconChain : public ::testing::Test {
     EXPECT_EQ(asked.size() + 1, rows.size());
     double largest = 0.0;
     double best = kInfinity;
-    // Set-up sends a few commands before the first tick's.
+    // Set-up sends a few commands before that of the first tick.
     for (std::size_t offset = 0; offset < 10; ++offset) {
       double worst = 0.0;
       for (std::size_t i = 0; i < asked.size() && i + offset < given.size(); ++i) {
         largest = std::max(largest, length(asked[i]));
-        // Half a count of each motor, in N at that place; and the arms are taken where the encoders
-        // say, which turns a force by less than two parts in a thousand.
+        // Half a count of each motor, in N at that place. The arms are taken to be where the
+        // encoders say, which turns a force by less than two parts in a thousand.
         const double allowed = given[i + offset][3] + 2e-3 * length(asked[i]);
         worst = std::max(worst, distance(asked[i], given[i + offset]) / allowed);
       }
@@ -162,13 +162,13 @@ TEST_F(FalconChain, InByTheMouthAlongTheWallAndOutAndTheMotorsGiveWhatTheSceneAs
   (void)folder_.file("hand", kToTheBottom);
   const Json report = feel(scenePath("container.yaml"), "5.2", 2.0);
   EXPECT_EQ(regionsOf(report), (std::vector<std::string>{"outside", "liquid", "outside"}));
-  // Felt anew from the record: the same forces, bit for bit.
+  // Replayed from the record: the same forces, bit for bit.
   EXPECT_EQ(runPalpate({"replay", "felt.npy"}, folder_.path()).exit_code, 0);
 }
 
-// Through the incision and the opened dura 15 mm deep into the brain, 14 mm aside, back against the
-// dura from inside, and by the same way on into the thalamus and out again. In the device's frame
-// of the scene, whose z points out of the head.
+// Through the incision and the opened dura 15 mm deep into the brain, 14 mm sideways, back against
+// the dura from inside, and on by the first way into the thalamus and out again. In the scene's
+// device frame, whose z points out of the head.
 TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOut) {
   (void)folder_.file("hand",
                      "0.8 0 0 0.042\n1.8 0 0 -0.004\n2.3 0.0037 -0.0135 -0.004\n"
@@ -177,7 +177,7 @@ TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOu
   const Json report = feel(scenePath("head.yaml"), "8.2", 1.0, {Vec3(24.0, -88.0, 0.0), 60.3});
   EXPECT_EQ(regionsOf(report), (std::vector<std::string>{"outside", "skin", "brain", "thalamus",
                                                          "brain", "skin", "outside"}));
-  // Aside of the opening the dura holds the hand in, whose spring and the wall's of 400 N/m are in
+  // Beside the opening the dura holds the hand in. The hand's spring and the wall's 400 N/m are in
   // series: the proxy stays at the wall, 1 mm or more in front of the hand.
   double most_held = 0.0;
   for (const std::string& line : linesOf(textOf(folder_.path("felt.csv")))) {
@@ -198,8 +198,8 @@ TEST_F(FalconChain, ASelfTestAndACalibrationReadWhereTheGripIsHeldAndPushNobody)
   EXPECT_EQ(result["state"], "active");
   EXPECT_EQ(result["fault"], "no fault");
   EXPECT_EQ(result["jumps"], 0);
-  // A reply each millisecond of the Falcon's time, and half a microsecond for each look at the
-  // clock: some of them a turn.
+  // One reply in each millisecond of the Falcon's time, which also advances by half a microsecond
+  // at each look at the clock, some of them in each turn.
   EXPECT_NEAR(result["ticks"].get<double>(), 1950.0, 50.0);
   EXPECT_NEAR(result["interval_ns"]["p50"].get<double>(), 1.05e6, 0.05e6);
 
@@ -213,14 +213,14 @@ TEST_F(FalconChain, ASelfTestAndACalibrationReadWhereTheGripIsHeldAndPushNobody)
   }
 }
 
-// At command 2700 the bowl's bottom is pressed from inside.
+// At command 2700 the hand presses on the bowl's bottom from inside.
 constexpr std::size_t kPressed = 2700;
 
 TEST_F(FalconChain, AStopAndAPulledCableEndItWithZeroForceAndTheRecordKept) {
   (void)folder_.file("hand", kToTheBottom);
   const std::string scene = scenePath("container.yaml");
   struct Case {
-    int signal;  ///< 0: the cable
+    int signal;  ///< 0: unplug the cable
     int exit_code;
     const char* code;
   };
@@ -234,7 +234,7 @@ TEST_F(FalconChain, AStopAndAPulledCableEndItWithZeroForceAndTheRecordKept) {
     ASSERT_GE(given.size(), kPressed);
     EXPECT_GT(length(given[kPressed - 1]), 0.5);
     if (each.signal != 0) {
-      // The command that is under way, and zero from the next on.
+      // The command that is being sent may keep its force; all later ones must be zero.
       ASSERT_GT(given.size(), kPressed + 2);
       for (std::size_t i = kPressed + 2; i < given.size(); ++i) EXPECT_EQ(length(given[i]), 0.0);
     }

@@ -1,5 +1,5 @@
-// The gallery shows every example scene, its pictures are there, and all of them are small enough
-// for a repository.
+// The gallery shows every example scene, all its pictures exist, and they are small enough for a
+// repository.
 
 #include <filesystem>
 

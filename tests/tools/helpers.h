@@ -1,5 +1,5 @@
 #pragma once
-// What several tests of the command need.
+// Shared by several tests of the command.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ inline Json parseOnly(const CommandResult& result) {
   return json.is_object() ? json : Json::object();
 }
 
-/// What `palpate convert ARGUMENTS... --json` tells; it must end well.
+/// The report of `palpate convert ARGUMENTS... --json`, which must succeed.
 inline Json converted(const TempFolder& folder, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "convert");
   arguments.emplace_back("--json");
@@ -42,8 +42,8 @@ inline Json converted(const TempFolder& folder, std::vector<std::string> argumen
   return parseOnly(result);
 }
 
-/// Runs `palpate ARGUMENTS...` in `folder` and sends it `signal` as soon as it talks; it must end
-/// as interrupted.
+/// Runs `palpate ARGUMENTS...` in `folder` and sends it `signal` as soon as it prints to stderr; it
+/// must end as interrupted.
 inline CommandResult runInterrupted(const std::vector<std::string>& arguments,
                                     const std::string& folder, int signal = SIGTERM) {
   bool sent = false;
@@ -91,7 +91,7 @@ inline std::vector<std::string> cellsOf(const std::string& line) {
   return cells;
 }
 
-/// Tags of an XML text closed in the order in which they were opened; false if not.
+/// Whether the tags of an XML text are closed in the right order.
 inline bool isWellFormed(const std::string& xml) {
   std::vector<std::string> open;
   for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {
@@ -113,7 +113,7 @@ inline std::string scenePath(const std::string& name) {
   return test::sourceFolder() + "/data/scenes/" + name;
 }
 
-/// The paper's container, all its numbers known.
+/// The paper's container, with all its numbers known.
 inline constexpr const char* kContainer = R"(palpate: 1
 length: mm
 fields:

@@ -1,4 +1,5 @@
-// palpate import: what leads where in scenes of nested tissues, however their labels are numbered.
+// palpate import: which regions are connected in scenes of nested tissues, however their labels are
+// numbered.
 
 #include <algorithm>
 #include <array>
@@ -27,7 +28,7 @@ const Names kLimb = {"skin",           "subcutaneous fat",  "vastus muscle",
 const Names kHead = {"scalp", "skull", "dura mater", "CSF", "white matter", "lateral ventricle"};
 const std::set<std::string> kRigid = {"femur", "skull"};
 
-/// Radius of each shell's outer side [voxels of 1 mm].
+/// Outer radius of each shell [voxels of 1 mm].
 double radiusOf(std::size_t layer) { return 8.5 - 1.25 * static_cast<double>(layer); }
 
 /// Shells about the origin; `numbers`: the label of each.
@@ -59,8 +60,8 @@ ImportedScan scanOf(const Names& names, const Numbers& numbers, const TissueTabl
   return scan;
 }
 
-/// The scene that is written, with spheres for what would be made of labels: the same layers, walls
-/// and ports.
+/// The scene that import writes, with spheres in place of the surfaces made from labels: the same
+/// layers, walls and ports.
 ScenePtr compiled(const ImportedScan& scan, const Numbers& numbers, const TissueTable& tissues) {
   tools::ImportOptions options;
   options.scans = {"labels.nii.gz"};
@@ -74,7 +75,7 @@ ScenePtr compiled(const ImportedScan& scan, const Numbers& numbers, const Tissue
     const std::string shell = n + 1 == kLayers ? "s" + std::to_string(n)
                                                : "{difference: [s" + std::to_string(n) + ", s" +
                                                      std::to_string(n + 1) + "]}";
-    // "labels: {image: labels, match: [7], voxel: 0.5}"
+    // Finds "labels: {image: labels, match: [7], voxel: 0.5}".
     const std::size_t labels =
         text.find("labels: {image: labels, match: [" + std::to_string(numbers[n]) + "], voxel: ");
     text.replace(labels, text.find('}', labels) + 1 - labels, "inside: " + shell);
@@ -90,7 +91,7 @@ RegionId regionOf(const Scene& scene, const std::string& name) {
   return kOutside;
 }
 
-/// All that ports and absent walls lead to from `from`, whether or not the regions touch.
+/// All regions that ports and absent walls lead to from `from`, whether or not the regions touch.
 std::set<RegionId> walkedFrom(const Scene& scene, RegionId from) {
   std::set<RegionId> met = {from};
   std::deque<RegionId> next = {from};
@@ -154,8 +155,8 @@ TEST_P(ImportCrossings, NoNumberingLeadsIntoWhatIsRigid) {
         ASSERT_FALSE(kRigid.contains(scene->regions()[met].name)) << "from " << start.name;
       }
     }
-    // From outside everything soft in front of the bone is reached, and from the innermost all
-    // behind it.
+    // From outside, everything soft in front of the bone can be reached; from the innermost region,
+    // everything behind it.
     std::set<std::string> reached;
     for (const RegionId r : walkedFrom(*scene, kOutside)) reached.insert(scene->regions()[r].name);
     for (const RegionId r : walkedFrom(*scene, regionOf(*scene, names[kLayers - 1]))) {
@@ -192,7 +193,7 @@ TEST(ImportCrossingsOfOne, EachWallRupturesBothWaysAtTheForceOfWhatIsEnteredOrLe
   const auto between = [&](const ScenePtr& scene, const char* a, const char* b) {
     return forcesBetween(*scene, a, b);
   };
-  // Out of the muscle into fat is as hard as into it: the same fascia.
+  // Leaving the muscle into fat takes as much force as entering it: the same fascia.
   EXPECT_EQ(between(limb, "subcutaneous fat", "vastus muscle"),
             std::pair(force_of("muscle", &Tissue::opens_at), force_of("muscle", &Tissue::back)));
   EXPECT_GE(force_of("muscle", &Tissue::back), force_of("muscle", &Tissue::opens_at));
@@ -223,7 +224,7 @@ TEST(ImportCrossingsOfOne, ParcelsOfOneTissueHaveNoWallAndStayRegions) {
     }
     EXPECT_FALSE(scene->passages().wall(a, kOutside).absent);
   }
-  // Bones that touch are bones apart: each stays closed.
+  // Bones that touch remain separate: each stays closed.
   const Names bones = {"femur", "tibia", "patella", "fibula", "talus", "calcaneus"};
   const ScenePtr joint = compiled(scanOf(bones, numbers, tissues), numbers, tissues);
   EXPECT_TRUE(joint->passages().ports().empty());

@@ -22,7 +22,7 @@ void writeHead(const TempFolder& folder, const std::array<int, 6>& numbers) {
     int layer = -1;
     for (std::size_t n = 0; n < kRadii.size(); ++n)
       layer = r < kRadii.at(n) ? static_cast<int>(n) : layer;
-    // What is in the hole is scalp.
+    // Scalp fills the hole.
     if (layer == 1 && mm.z > 0.0 && std::hypot(mm.x, mm.y) < kHole) layer = 0;
     return layer < 0 ? 0 : numbers.at(static_cast<std::size_t>(layer));
   });
@@ -40,8 +40,8 @@ TEST(ImportFelt, AVentricleIsEnteredFromWhiteMatterWithoutSlidingAlongIt) {
   const TempFolder folder;
   writeHead(folder, {5, 2, 3, 6, 1, 4});
   (void)run(folder, {"import", "head.nii.gz", "--names", "names.csv", "-o", "head.yaml", "--json"});
-  // Down the hole, off the middle: it meets the ventricle's wall at 30 degrees to its normal, and
-  // goes out of it on the far side.
+  // Down the hole, off its middle: the needle meets the ventricle's wall at 30 degrees to its
+  // normal, and leaves it on the far side.
   constexpr double kOff = 3.0;
   const std::vector<TracedTick> ticks =
       touched(folder, "head.yaml", {Vec3(kOff, 0, 30), Vec3(kOff, 0, -9)}, "10mm/s");
@@ -60,13 +60,13 @@ TEST(ImportFelt, AVentricleIsEnteredFromWhiteMatterWithoutSlidingAlongIt) {
     }
     before = &tick;
   }
-  // The scalp gives way 7 mm deep, and the dura behind it in the same tick.
+  // The scalp opens 7 mm deep, and the dura behind it in the same tick.
   ASSERT_GE(order.size(), 4U);
   order.erase(order.begin(), order.end() - 4);
   EXPECT_EQ(order,
             (std::vector<std::string>{"CSF", "white matter", "lateral ventricle", "white matter"}));
-  // The ependyma gives way at 0.05 N of its 80 N/m either way: 0.63 mm across it, 0.72 along the
-  // needle at 30 degrees; a tick of 0.01 mm more.
+  // The ependyma opens at 0.05 N in both directions; with 80 N/m that is 0.63 mm across it, and
+  // 0.72 mm along the needle at 30 degrees; plus a tick of 0.01 mm.
   std::printf("  ventricle: pressed %.3f mm in, %.3f mm out, %.3f mm aside\n", into, out_of,
               farthest);
   EXPECT_NEAR(into, 0.05 / 80.0 * 1e3, 0.12);
@@ -104,8 +104,8 @@ TEST(ImportFelt, NoWayLeadsIntoBone) {
   std::shuffle(numbers.begin(), numbers.end(), random);
   writeHead(folder, numbers);
   (void)run(folder, {"import", "head.nii.gz", "--names", "names.csv", "-o", "head.yaml", "--json"});
-  // Into the hole and out of it through the inner side of the skull in all directions, as deep as a
-  // hand can go.
+  // Into the hole and out through the inner side of the skull in all directions, as deep as a hand
+  // can reach.
   std::vector<Vec3> points;
   for (int n = 0; n < 12; ++n) {
     Vec3 way = vdb::test::direction(random);
@@ -123,7 +123,7 @@ TEST(ImportFelt, NoWayLeadsIntoBone) {
 
 TEST(ImportFelt, AnAirwayIsFeltAsAMembraneAndThenAsNothing) {
   const TempFolder folder;
-  // A block of muscle with a windpipe in it, open above.
+  // A block of muscle with a windpipe in it, open at the top.
   (void)vdb::test::writeNifti(
       vdb::test::imageAround(Vec3(0.0), Mat3(1.0), 40.0,
                              [](const Vec3& mm) {
@@ -134,7 +134,7 @@ TEST(ImportFelt, AnAirwayIsFeltAsAMembraneAndThenAsNothing) {
       folder, "neck.nii.gz");
   (void)folder.file("names.csv", "value,name\n1,trachea\n2,muscle\n");
   (void)run(folder, {"import", "neck.nii.gz", "--names", "names.csv", "-o", "neck.yaml", "--json"});
-  // From above nothing is in the way.
+  // From above nothing stands in the way.
   for (const TracedTick& tick :
        touched(folder, "neck.yaml", {Vec3(0, 0, 25), Vec3(0, 0, -10)}, "20mm/s")) {
     EXPECT_EQ(glm::length(tick.force), 0.0);

@@ -1,5 +1,5 @@
-// Scans that the tests make, through the command: imported, and felt where their closed forms have
-// walls.
+// Scans made by the tests, through the command: they are imported, and felt where their closed
+// forms have walls.
 
 #include <cmath>
 #include <cstdio>
@@ -22,14 +22,14 @@ const Json& regionOf(const Json& json, const std::string& name) {
   return json;
 }
 
-// Labels for bone and muscle, gray values for the skin, both oblique; walls that the lightest touch
-// opens, but bone's.
+// Labels for bone and muscle, gray values for the skin, both oblique. All walls except the bone's
+// open at the lightest touch.
 TEST(ImportMade, LayersOfALimbAreFeltAtTheRadiiOfItsCylinders) {
   const TempFolder folder;
   const Limb limb;
   const Mat3 axes = vdb::test::obliqueAxes(Vec3(1, 1, 1));
   Image labels = limb.labels(axes);
-  for (float& label : labels.values) label = label > 2.0F ? 0.0F : label;  // fat has none
+  for (float& label : labels.values) label = label > 2.0F ? 0.0F : label;  // fat has no label
   const Image ct = limb.scan(axes);
   (void)vdb::test::writeNifti(labels, folder, "labels.nii.gz");
   (void)vdb::test::writeDicom(ct, folder, "series");
@@ -59,8 +59,8 @@ tissues:
   }
   for (const auto& [name, count] : voxels) EXPECT_EQ(regionOf(json, name)["voxels"], count) << name;
 
-  // From 35 mm in to 6.5 mm, 1.5 mm into the bone, from eight sides; from one to the next it is
-  // never nearer than 32 mm.
+  // From 35 mm in to 6.5 mm, 1.5 mm into the bone, from eight sides; between two of them the hand
+  // is never nearer than 32 mm.
   constexpr double kDepth = 1.5;
   std::vector<Vec3> points, ways;
   for (int n = 0; n < 8; ++n) {
@@ -76,7 +76,7 @@ tissues:
     const Vec3 end = points[3 * n + 1];
     std::vector<std::string> order;
     std::vector<double> radii;
-    // The next way in begins outside, where the hand is farthest out.
+    // The next approach begins outside, where the hand is farthest out.
     while (limb.radius(ticks[tick].hand) < 34.99) ++tick;
     while (glm::length(ticks[tick].hand - end) > 0.011) {
       if (ticks[tick].region != "outside" &&
@@ -91,11 +91,12 @@ tissues:
     const double force = glm::length(last.force);
     std::printf("  skin at %.2f mm, muscle at %.2f mm, bone at %.2f mm, %.3f N\n", radii[0],
                 radii[1], limb.radius(last.proxy), force);
-    // Gray values say it to a tenth of a voxel and a tick, labels to a quarter of a voxel.
+    // Gray values give the radius to a tenth of a voxel and a tick, labels to a quarter of a voxel.
     EXPECT_NEAR(radii[0], Limb::kBody, 0.1);
     EXPECT_NEAR(radii[1], Limb::kMuscle, 0.25);
     EXPECT_NEAR(limb.radius(last.proxy), Limb::kBone, 0.25);
-    // K times the depth, to the same quarter of a voxel; and straight outwards, as walls of labels
+    // K times the depth, to the same quarter of a voxel; the force is straight outwards only to
+    // some degrees, the error of labels.
     // turn by some degrees.
     EXPECT_NEAR(force, 1000.0 * kDepth * 1e-3, 1000.0 * 0.25e-3);
     EXPECT_GT(glm::dot(last.force, ways[n]), 0.97 * force);
@@ -104,8 +105,8 @@ tissues:
   }
 }
 
-/// A shell of 4 mm around a core, each a label of its own, and the table that opens its walls at 3
-/// N and 2 N.
+/// A shell of 4 mm around a core, each with its own label, and the table that opens their walls at
+/// 3 N and 2 N.
 void writeBall(const TempFolder& folder) {
   (void)vdb::test::writeNifti(
       vdb::test::imageAround(Vec3(0.0), vdb::test::obliqueAxes(Vec3(1, 1, 1.2)), 40.0,
@@ -135,7 +136,7 @@ TEST(ImportMade, AShellIsFeltOnBothFacesAndItsCoreReachedThroughItAlone) {
       peak.push_back(region["peak_force_N"]);
     }
     ASSERT_EQ(order, (std::vector<std::string>{"outside", "shell", "core", "shell", "outside"}));
-    // Into the shell and into the core, then back out of each.
+    // Into the shell and into the core, then back out of both.
     EXPECT_NEAR(peak[0], 3.0, 0.05);
     EXPECT_NEAR(peak[1], 3.0, 0.05);
     EXPECT_NEAR(peak[2], 2.0, 0.05);
@@ -150,7 +151,7 @@ TEST(ImportMade, WhereSegmentsOverlapTheLaterIsFelt) {
         Vec3(0.0), vdb::test::obliqueAxes(Vec3(1, 1, 1)), 44.0,
         [=](const Vec3& mm) { return glm::length(mm - Vec3(x, 0, 0)) < radius ? 1 : 0; });
   };
-  // The later ball is stiffer, and reaches out of the other.
+  // The later ball is stiffer, and sticks out of the other one.
   const vdb::test::Segment soft{"soft", ball(-4.0, 14.0)}, hard{"hard", ball(8.0, 10.0)};
   (void)vdb::test::writeSegments({soft, hard}, folder, "two.seg.nrrd");
   (void)folder.file("table.yaml", R"(palpate_tissues: 1
@@ -174,11 +175,11 @@ tissues:
   EXPECT_EQ(regionOf(json, "soft")["voxels"], left);
   EXPECT_EQ(regionOf(json, "hard")["voxels"], later);
 
-  // Within both: the later has it.
+  // Inside both balls: the later one has it.
   const Json query = run(folder, {"query", "two.yaml", "--json", "--at", "4,0,0", "-8,0,0"});
   EXPECT_EQ(query["points"][0]["region"], "hard");
   EXPECT_EQ(query["points"][1]["region"], "soft");
-  // 1 mm deep from either end, where one of them alone is.
+  // Press 1 mm deep at either end, where only one of them is.
   struct Press {
     Vec3 wall;
     Vec3 way;
@@ -188,7 +189,7 @@ tissues:
        {Press{{-18, 0, 0}, {1, 0, 0}, 300.0}, Press{{18, 0, 0}, {-1, 0, 0}, 900.0}}) {
     const std::vector<TracedTick> ticks = touched(
         folder, "two.yaml", {press.wall - 4.0 * press.way, press.wall + press.way}, "20mm/s");
-    // To a quarter of a voxel of 1 mm.
+    // Within a quarter of a voxel of 1 mm.
     EXPECT_NEAR(glm::length(ticks.back().force), press.stiffness * 1e-3, press.stiffness * 0.25e-3);
   }
 }
@@ -206,7 +207,7 @@ TEST(ImportMade, AFolderOfSlicesIsAnImageOfTheCommandToo) {
                   made.axes[static_cast<int>(a)][static_cast<int>(r)], 1e-9);
     }
   }
-  // Deep within bone and muscle gray values are level.
+  // Deep inside bone and muscle, gray values are constant.
   const Json query = run(folder, {"query", "series", "--json", "--at", pointText(limb.center),
                                   pointText(limb.center + 12.0 * limb.outwards(1.0))});
   EXPECT_NEAR(query["points"][0]["value"].get<double>(), Limb::kBoneHu, 1e-6);

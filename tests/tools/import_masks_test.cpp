@@ -17,8 +17,8 @@ namespace {
 constexpr const char* kOracle = "vdb/structures_oracle.py";
 constexpr int kSize = 21;
 
-/// A mask in `folder`, voxels of 1 mm with the middle one at the origin, moved by `shift` [mm]
-/// along x.
+/// Writes a mask to `folder`, with voxels of 1 mm, the middle one at the origin, shifted by `shift`
+/// [mm] along x.
 void writeMask(const TempFolder& folder, const std::string& name,
                const std::function<bool(int, int, int)>& is_in, double shift = 0.0) {
   vdb::test::NiftiFile file;
@@ -38,7 +38,7 @@ void writeMask(const TempFolder& folder, const std::string& name,
                     std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-/// Muscle from 8 mm down along y and a bone from -3 mm, which the muscle's mask holds as well.
+/// Muscle from 8 mm down along y, and a bone from -3 mm that the muscle's mask contains as well.
 void writeLeg(const TempFolder& folder, const std::string& below) {
   std::filesystem::create_directory(folder.path(below));
   const auto from = [](int top) {
@@ -51,7 +51,7 @@ void writeLeg(const TempFolder& folder, const std::string& below) {
   writeMask(folder, below + "/liver.nii.gz", [](int, int, int) { return false; });
 }
 
-/// Voxels of a millimeter across: 19 along x and along z.
+/// Voxels of a layer one millimeter thick: 19 along x and along z.
 constexpr std::uint64_t kLayer = 19 * 19;
 
 /// Region -> voxels.
@@ -72,7 +72,7 @@ TEST(ImportMasks, AFolderIsASceneThatAHandFeels) {
   EXPECT_EQ(voxelsOf(parseOnly(result)),
             (std::map<std::string, std::uint64_t>{{"a_vastus muscle", 11 * kLayer},
                                                   {"femur", 7 * kLayer}}));
-  // The scene names the folder; a needle goes through the muscle and stands on the bone, whose
+  // The scene names the folder; a needle goes through the muscle and stops at the bone, whose
   // border is at -2.5 mm.
   EXPECT_NE(textOf(folder.path("leg.yaml")).find("labels: {file: \"segmentations\"}"),
             std::string::npos);
@@ -88,7 +88,7 @@ TEST(ImportMasks, ListedOnesAreReadAgainAsTheSceneSays) {
   writeLeg(folder, "m");
   const Json json = run(folder, {"import", "m/femur.nii.gz", "m/a_vastus muscle.nii.gz",
                                  "--priority", "a_vastus muscle", "-o", "leg.yaml", "--json"});
-  // The muscle has all that both hold, so that nothing is left of the bone.
+  // The muscle gets all voxels that are in both masks, so that nothing is left of the bone.
   EXPECT_EQ(voxelsOf(json),
             (std::map<std::string, std::uint64_t>{{"a_vastus muscle", 18 * kLayer}}));
   const std::string scene = textOf(folder.path("leg.yaml"));
@@ -99,7 +99,7 @@ TEST(ImportMasks, ListedOnesAreReadAgainAsTheSceneSays) {
       << scene;
   EXPECT_EQ(run(folder, {"query", "leg.yaml", "--at", "0,0,0", "--json"})["points"][0]["region"],
             "a_vastus muscle");
-  // A scene in which a word stands for a list is refused at its place.
+  // A scene in which a single word replaces a list is refused, with the place.
   std::string wrong = scene;
   ASSERT_NE(wrong.find(with), std::string::npos);
   wrong.replace(wrong.find(with), with.size(), "with: m/femur.nii.gz");
@@ -132,7 +132,7 @@ TEST(ImportMasks, ADicomSegmentationHasTissuesByItsCodes) {
                              {folder.path("ball.nii.gz"), "binary", folder.path("seg.dcm")});
   const Json json = run(folder, {"import", "seg.dcm", "-o", "s.yaml", "--json"});
   ASSERT_EQ(json["regions"].size(), 1U);
-  // Called "part 1", which no word tells of; its SNOMED code is that of the liver.
+  // Its name "part 1" tells nothing; its SNOMED code is that of the liver.
   EXPECT_EQ(json["regions"][0]["name"], "part 1");
   EXPECT_EQ(json["regions"][0]["tissue"], "liver");
   EXPECT_EQ(run(folder, {"query", "s.yaml", "--at", "0,0,0", "--json"})["points"][0]["region"],

@@ -1,4 +1,4 @@
-// palpate import: which tissue a label's name or code means.
+// palpate import: the tissue that a label's name or code means.
 
 #include <filesystem>
 #include <fstream>
@@ -19,7 +19,7 @@ using tools::TissueClass;
 using tools::TissueNames;
 using Expected = std::vector<std::pair<const char*, const char*>>;
 
-/// Each name is judged among all the others.
+/// Each name is judged in the company of all others.
 void expectTissues(const Expected& expected) {
   std::vector<std::string> names;
   for (const auto& [name, tissue] : expected) names.emplace_back(name);
@@ -120,7 +120,7 @@ TEST(ImportNames, AreReadInLatin) {
 }
 
 TEST(ImportNames, MeanOtherThingsInOtherCompany) {
-  // Nothing but brain is about, as in AAL.
+  // All other names are of the brain, as in AAL.
   expectTissues({{"Precentral_L", "brain"},
                  {"Frontal_Sup_Orb_R", "brain"},
                  {"Rectus_L", "brain"},
@@ -130,7 +130,7 @@ TEST(ImportNames, MeanOtherThingsInOtherCompany) {
                  {"Thalamus_R", "brain"},
                  {"gyrus rectus", "brain"},
                  {"Putamen_L", "brain"}});
-  // And here there is none.
+  // Here none of them is.
   expectTissues({{"Rectus_L", "muscle"}, {"rectus_femoris", "muscle"}, {"femur", "bone"}});
   expectTissues({{"angular", ""}, {"femur", "bone"}});
   expectTissues({{"medial rectus", "muscle"},
@@ -283,7 +283,7 @@ TEST(ImportNames, OfTheScansAreAllKnown) {
     std::size_t unmatched = 0;
     (void)tissuesOf(names, unmatched);
     EXPECT_EQ(unmatched, 0U) << file;
-    // By what stands in the name, none of which is the way that the dictionary takes.
+    // From the words in the names, none of which decides by the dictionary of whole names.
     const std::vector<NameVerdict> verdicts = TissueNames::own().of(names);
     for (std::size_t n = 0; n < names.size(); ++n) {
       const auto says = [&](const char* word) { return names[n].find(word) != std::string::npos; };

@@ -1,4 +1,4 @@
-// palpate import: what holds a needle's shaft sideways in a scene that was made from a scan.
+// palpate import: the sideways support of a needle's shaft in a scene that was made from a scan.
 
 #include <cmath>
 #include <functional>
@@ -31,8 +31,8 @@ void writeImage(const TempFolder& folder, const std::string& name,
                     std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-/// [N/m^2] Of a solid steel rod in a tissue of Young's modulus `young` [Pa] (Vesic 1961, on both
-/// sides of it).
+/// [N/m^2] Lateral stiffness for a solid steel rod in a tissue of Young's modulus `young` [Pa]
+/// (Vesic 1961, with tissue on both sides of the rod).
 double vesic(double young) {
   constexpr double kSteel = 193e9;
   constexpr double kNu = 0.45;
@@ -40,7 +40,7 @@ double vesic(double young) {
          (1.0 - kNu * kNu);
 }
 
-/// A leg along z: muscle within 13 mm of the axis, fat and skin within 18 mm around it.
+/// Imports a leg along z: muscle within 13 mm of the axis, fat and skin within 18 mm around it.
 std::string importedLeg(const TempFolder& folder) {
   writeImage(folder, "leg.nii.gz", [](double r) { return r < 13 ? 1 : 0; });
   writeImage(folder, "body.nii.gz", [](double r) { return r < 18 ? 1 : 0; });
@@ -65,13 +65,13 @@ TEST(ImportNeedle, EveryTissueThatCanBeCutHoldsTheShaftByVesicsModulus) {
   const TempFolder folder;
   const std::string scene = importedLeg(folder);
   const std::string stiffness = "lateral: {stiffness: ";
-  // Young's moduli of data/materials/tissues.yaml; that of skin is what its wall's 400 N/m at a tip
-  // of 1 mm comes to. Three digits are written.
+  // Young's moduli are those of data/materials/tissues.yaml; that of skin follows from its wall's
+  // 400 N/m at a tip of 1 mm. Three digits are written.
   EXPECT_NEAR(numberOf(scene, "muscle", stiffness) / vesic(62.2e3), 1.0, 5e-3);
   EXPECT_NEAR(numberOf(scene, "fat", stiffness) / vesic(26.1e3), 1.0, 5e-3);
   const double skin = 400.0 * (1.0 - 0.45 * 0.45) / 2e-3;
   EXPECT_NEAR(numberOf(scene, "skin", stiffness) / std::min(9e4, vesic(skin)), 1.0, 5e-3);
-  // Each tears at its cutting force over the tip's 2 mm.
+  // Each tissue tears at its cutting force divided by the tip's 2 mm.
   EXPECT_NEAR(numberOf(scene, "muscle", "strength: "), 300.0, 0.5);
   EXPECT_NEAR(numberOf(scene, "fat", "strength: "), 100.0, 0.5);
   EXPECT_NE(scene.find("#   shaft, sideways, "), std::string::npos);
@@ -102,8 +102,8 @@ tissues:
   EXPECT_EQ(textOf(folder.path("plain_leg.yaml")).find("lateral"), std::string::npos);
 }
 
-/// z of the force on the hand [N] at the end of a way in and then sideways, and y [mm] of the proxy
-/// where it came into fat, into muscle, and at the end.
+/// z component of the force on the hand [N] at the end of a path straight in and then sideways; and
+/// y [mm] of the proxy where it entered fat and muscle, and at the end.
 struct Walked {
   double force = 0.0;
   std::vector<double> y;
@@ -111,7 +111,7 @@ struct Walked {
 
 Walked walked(const TempFolder& folder, const std::string& scene) {
   Walked out;
-  // Along y, and then along z by 2 mm.
+  // Along y, and then by 2 mm along z.
   const CommandResult touch = runPalpate({"touch", scene, "--insert", "0,30,0", "0,-2,0", "0,-2,2",
                                           "--speed", "10mm/s", "--trace", scene + ".csv"},
                                          folder.path());
@@ -121,7 +121,7 @@ Walked walked(const TempFolder& folder, const std::string& scene) {
   for (const std::string& row : linesOf(textOf(folder.path(scene + ".csv")))) {
     const std::vector<std::string> cells = cellsOf(row);
     if (cells[0] == "time_s" || cells.size() < 11 || row[0] < '0' || row[0] > '9') continue;
-    // Until it goes through a wall the tip stands on it.
+    // Before the tip goes through a wall it rests on it.
     if (!last.empty() && cells[10] != last) out.y.push_back(y);
     last = cells[10];
     y = std::stod(cells[5]) * 1e3;
@@ -143,7 +143,8 @@ TEST(ImportNeedle, ANeedleThatIsWalkedSidewaysIsHeld) {
   (void)folder.file("free.yaml", scene);
   const Walked free = walked(folder, "free.yaml");
   // tools/docs/scene.md: from s0 to s1 below the hole a tissue holds the tip by k (s1^3 - s0^3) /
-  // (3 L) sin(angle), square to the needle. What the tip cuts at is the same in both.
+  // (3 L) sin(angle), perpendicular to the needle. The cutting force at the tip is the same in both
+  // runs.
   const double to_muscle = (held.y[0] - held.y[1]) * 1e-3;
   const double length = std::hypot((held.y[0] - held.y[2]) * 1e-3, 2e-3);
   const double angle = std::asin(2e-3 / length);
@@ -157,8 +158,8 @@ TEST(ImportNeedle, ANeedleThatIsWalkedSidewaysIsHeld) {
   std::printf("  sideways %.3f N, without %.3f N, by the formula %.3f N more\n", held.force,
               free.force, expected);
   EXPECT_GT(expected, 0.1);
-  // 3 %: the needle gets 0.5 % longer as it turns, which counts by its cube, and what the tip
-  // presses on turns with it.
+  // 3 %: the needle gets 0.5 % longer as it rotates, which counts with the third power, and the
+  // force at the tip rotates with it.
   EXPECT_NEAR(std::fabs(held.force - free.force), expected, 0.03 * expected);
 }
 

@@ -1,5 +1,5 @@
 // A scanned pelvis, imported and touched: its layers are felt where the labels have them, and a
-// needle feels them as its model says.
+// needle feels them as its model predicts.
 
 #include <array>
 #include <cmath>
@@ -20,11 +20,11 @@ const char* const kOracle = "tools/scan_oracle.py";
 const std::string kMuscles = "5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28";
 const std::string kSets = kMuscles + ";1,2,3,4";
 
-/// The head of a femur.
+/// A slice through the head of a femur.
 constexpr int kSlice = 56;
 
-/// All of it takes minutes, and is felt with PALPATE_SLOW_TESTS=1, each label a region; else one
-/// half of 11 slices, all muscles one region and all bones another.
+/// The whole pelvis takes minutes, and is felt with PALPATE_SLOW_TESTS=1, each label as a region.
+/// Otherwise one half of 11 slices, with all muscles as one region and all bones as another.
 struct Pelvis {
   bool is_whole = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   TempFolder folder;
@@ -46,31 +46,32 @@ struct Pelvis {
   }
 };
 
-/// "muscle" for the region of one, and so on.
+/// "muscle" for the region of a muscle, and so on.
 std::string kindOf(const std::string& region) {
   if (region == "pelvis" || region == "femur" || region == "sacrum" || region == "spine")
     return "bone";
   return region.find("muscle") != std::string::npos ? "muscle" : region;
 }
 
-/// Skin, muscle and bone, in the order in which a ray meets them.
+/// One value each for skin, muscle and bone, in the order in which a ray meets them.
 using Three = std::array<double, 3>;
 constexpr std::array<const char*, 3> kNames = {"soft_tissue", "muscle", "bone"};
 
-/// A ray through the head of a femur, in its slice, as the labels have it.
+/// A ray through the head of a femur, in its slice, by the labels.
 struct Ray {
   Vec3 from{0.0};      ///< [mm] far outside
   Vec3 way{0.0};       ///< inwards
   Three depth{};       ///< [mm] from `from`
   Three angle{};       ///< [degrees] to the border's normal
-  double voxel = 0.0;  ///< [mm] how far the ray goes through a voxel of 1 x 1 x 3 mm
+  double voxel = 0.0;  ///< [mm] length of the ray within a voxel of 1 x 1 x 3 mm
 
   [[nodiscard]] double widestAngle() const { return *std::max_element(angle.begin(), angle.end()); }
 };
 
-/// Of twenty rays all around, those that meet each of the three borders at less than 60 degrees. A
-/// ray that grazes a border has no certain place on it: half a voxel across is a whole one along,
-/// and more. The femur is the thicker one of the slice; nothing here depends on what is felt.
+/// Of twenty rays all around, those that meet each of the three borders at less than 60 degrees to
+/// its normal. A ray that grazes a border has no certain place on it: half a voxel across is a
+/// whole one along the ray, or more. The femur is the thicker bone of the slice; the choice does
+/// not depend on anything felt.
 std::vector<Ray> raysOf(const Pelvis& pelvis) {
   std::vector<Ray> rays;
   for (const std::vector<double>& row : vdb::test::askScript(
@@ -98,12 +99,12 @@ void importPelvis(const Pelvis& pelvis, const std::vector<std::string>& more) {
   EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
 }
 
-/// What of a row of a trace is looked at.
+/// The part of a trace's row that is used.
 struct Row {
   Vec3 hand{0.0};      ///< [mm]
   Vec3 proxy{0.0};     ///< [mm]
   Vec3 force{0.0};     ///< [N]
-  std::string region;  ///< its kind
+  std::string region;  ///< the kind of region
   std::string event;
 };
 
@@ -130,8 +131,8 @@ TEST(ImportPelvis, LayersAreFeltAsDeepAsTheLabelsHaveThem) {
   const Pelvis pelvis;
   const std::vector<Ray> rays = raysOf(pelvis);
   ASSERT_GE(rays.size(), 10U);
-  // Walls that the lightest touch opens, so that the probe goes where the hand goes, and all that
-  // it tells is where it comes into the next region.
+  // Walls that open at the lightest touch, so that the probe goes wherever the hand goes, and shows
+  // only where it enters the next region.
   (void)pelvis.folder.file("open.yaml", R"(palpate_tissues: 1
 tip_radius: {value: 1 mm, basis: assumed, source: a needle}
 stiffest: {value: 2000 N/m, basis: assumed, source: a device}
@@ -165,7 +166,7 @@ tissues:
   const std::vector<Row> rows = touched(pelvis, {"--path", "path.csv"});
   ASSERT_EQ(rows.size(), ticks);
 
-  std::string points;  // where each border was felt, for the oracle
+  std::string points;  // places where borders were felt, for the oracle
   std::vector<std::string> told;
   int met_well = 0;
   for (std::size_t r = 0; r < rays.size(); ++r) {
@@ -181,14 +182,14 @@ tissues:
         }
       }
     }
-    // Into the body first, and nowhere past a layer that is listed as touching.
+    // Into the body first, and past no layer without touching it.
     ASSERT_GE(order.size(), 4U) << "ray " << r;
     EXPECT_EQ(order[0], "outside");
     EXPECT_EQ(order[1], "soft_tissue");
     EXPECT_EQ(order[2], "muscle");
     EXPECT_EQ(order.back(), "bone");
     for (std::size_t k = 0; k < 3; ++k) {
-      // What is felt at once is up to a step further in.
+      // A border is noticed up to a step behind it.
       const double off = felt[k] - 0.5 * kFine - ray.depth[k];
       char line[160];
       std::snprintf(line, sizeof line,
@@ -196,8 +197,8 @@ tissues:
                     r, kNames[k], ray.depth[k] - ray.depth[0], off, ray.angle[k]);
       told.emplace_back(line);
       EXPECT_NEAR(off, 0.0, ray.voxel) << line;
-      // Depth below the skin is between two borders, so both have to be met well: at less than 45
-      // degrees half a voxel across is less than one along.
+      // The depth below the skin lies between two borders, so both have to be met well: at less
+      // than 45 degrees, half a voxel across is less than one along the ray.
       if (ray.widestAngle() < 45.0) {
         EXPECT_NEAR(felt[k] - felt[0], ray.depth[k] - ray.depth[0], ray.voxel) << line;
         met_well += k == 0 ? 1 : 0;
@@ -210,7 +211,7 @@ tissues:
   for (const std::string& line : told) std::printf("%s\n", line.c_str());
   EXPECT_GE(met_well, 10);
 
-  // Across the border, whatever the angle: within the shorter side of a voxel.
+  // Perpendicular to the border, whatever the angle: within the shorter side of a voxel.
   double farthest = 0.0;
   for (const std::vector<double>& row : vdb::test::askScript(
            kOracle, "borders",
@@ -225,8 +226,8 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
   PALPATE_NEEDS_SCAN(kData);
   const Pelvis pelvis;
   const std::vector<Ray> rays = raysOf(pelvis);
-  // The one that meets skin and muscle most squarely: there no wall is slid along before it gives
-  // way.
+  // The ray that meets skin and muscle most perpendicularly: there the probe does not slide along a
+  // wall before it opens.
   const auto slant = [](const Ray& ray) { return std::max(ray.angle[0], ray.angle[1]); };
   const Ray ray = *std::min_element(
       rays.begin(), rays.end(), [&](const Ray& a, const Ray& b) { return slant(a) < slant(b); });
@@ -242,7 +243,7 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
       touched(pelvis, {"--insert", text(ray.from + (ray.depth[0] - 10.0) * ray.way),
                        text(ray.from + (ray.depth[2] + 2.0) * ray.way), "--speed", "10mm/s"});
 
-  // As the project's table has them: fat and muscle.
+  // Fat and muscle, from the project's table.
   struct Tissue {
     double cutting;    // [N]
     double shaft;      // [N/m] sliding
@@ -251,11 +252,11 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
   constexpr std::array<Tissue, 2> kTissues = {{{0.2, 35.0, 1.5}, {0.6, 47.0, 3.0}}};
   const std::vector<std::vector<double>> runs = vdb::test::askScript(
       kOracle, "runs", {pelvis.labels, pelvis.body, text(ray.from) + "," + text(ray.way), kSets});
-  /// On the way in, by the labels.
+  /// Predictions on the way in, by the labels.
   struct Model {
     double force = 0.0;  ///< [N]
-    double since = 0.0;  ///< [mm] from the last border
-    double until = 0.0;  ///< [mm] to the next
+    double since = 0.0;  ///< [mm] from the previous border
+    double until = 0.0;  ///< [mm] to the next border
   };
   const auto model = [&](double depth) {
     Model at;
@@ -272,7 +273,7 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
   };
 
   std::vector<std::string> order;
-  std::vector<double> before;  // [N] at each border that gave way
+  std::vector<double> before;  // [N] at each border that opened
   std::vector<double> after;
   std::size_t compared = 0;
   double worst = 0.0;
@@ -292,12 +293,13 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
     const bool is_held = glm::length(row.hand - row.proxy) > 1e-6;  // by a wall
     if (!is_in || is_held) continue;
     const Model by_labels = model(depth);
-    // Out of a muscle it presses up to 10 mm before that gives way (1.5 N at 156 N/m, slant), and
-    // then up to 4 mm before it cuts (0.6 N); and borders are a voxel off.
+    // On leaving a muscle the needle presses up to 10 mm before its wall opens (1.5 N at 156 N/m,
+    // slanting), and then up to 4 mm before it cuts (0.6 N); and borders are off by a voxel.
     if (by_labels.since < 15.0 || by_labels.until < ray.voxel) continue;
-    // Each border is up to a voxel off, and the force by as much of what the friction of its two
-    // sides differs by; the first has nothing on its outer side. Out of the muscle the tip may
-    // slide along a slant wall as far as it presses on it, so that the border is off by that.
+    // Each border is off by up to a voxel, and the force by that length times the difference in
+    // friction between the two sides; outside the first border there is no friction. On leaving the
+    // muscle the tip may slide along a slanting wall as far as it presses on it, so that this
+    // border is off by that distance.
     const double slid = borders > 2 ? 12.0 * 1.5 / 156.0 : 0.0;
     const double off = ray.voxel * 1e-3 * (35.0 + 12.0 * static_cast<double>(borders - 1)) + slid;
     EXPECT_NEAR(force, by_labels.force, off) << "at " << depth << " mm";
@@ -306,14 +308,14 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
   }
   for (std::size_t n = 0; n < before.size(); ++n) {
     std::printf("  border %zu: %.3f N, then %.3f N\n", n, before[n], after[n]);
-    // The wall is gone; cutting and friction stay.
+    // The wall's force is gone; cutting and friction remain.
     EXPECT_LT(after[n], before[n] - 0.2);
   }
   std::printf("  %zu ticks, off by %.4f N at most\n", compared, worst);
   ASSERT_GE(before.size(), 2U);
-  // The skin gives way at its force, and the muscle at its own with what the needle feels in the
-  // fat on top of that; up to the depth's error, damping at 10 mm/s, and what a wall that is not
-  // met squarely adds by its friction: the hand pushes along the ray, and the wall opens by what is
+  // The skin opens at its own force; the muscle at its force plus the force on the needle in the
+  // fat. Tolerances: the error of the depth, damping at 10 mm/s, and friction of a wall that is not
+  // met perpendicularly: the hand pushes along the ray, while the wall opens by the component
   // across it. Its normal is known to some 5 degrees.
   const auto aside = [&](double opens_at, std::size_t border) {
     constexpr double kDamping = 0.01;
@@ -327,7 +329,8 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
   EXPECT_EQ(order[0], "outside");
   EXPECT_EQ(order[1], "soft_tissue");
   EXPECT_EQ(order[2], "muscle");
-  EXPECT_EQ(std::count(order.begin(), order.end(), "bone"), 0);  // which is stood on, not entered
+  // The needle rests on bone, and never enters it
+  EXPECT_EQ(std::count(order.begin(), order.end(), "bone"), 0);
   const double stands = glm::dot(rows.back().proxy - ray.from, ray.way);
   EXPECT_NEAR(stands, ray.depth[2], ray.voxel);
 }

@@ -1,4 +1,4 @@
-// palpate import on real scans, against numpy and scipy, which read the same files.
+// palpate import on real scans, compared with numpy and scipy, which read the same files.
 
 #include <cmath>
 #include <cstdio>
@@ -18,8 +18,8 @@ struct Ray {
   Vec3 direction{0.0};
 };
 
-/// Where a probe would be: [mm] of the way to the body and from there to each group of regions; -1:
-/// never. Regions are asked for in steps of 0.25 mm.
+/// Where a probe would be: [mm] along the ray to the body, and from there to each group of regions;
+/// -1: never. Regions are queried in steps of 0.25 mm.
 std::vector<std::vector<double>> depths(const TempFolder& folder, const std::string& scene,
                                         const std::vector<Ray>& rays, double length,
                                         const std::vector<std::vector<std::string>>& groups) {
@@ -55,7 +55,7 @@ std::vector<std::vector<double>> depths(const TempFolder& folder, const std::str
   return all;
 }
 
-/// Compares with the march through the voxels, ray by ray, and returns how many groups were met.
+/// Compares with the march through the voxels, ray by ray; returns how many groups were met.
 int expectDepths(const std::vector<std::vector<double>>& ours,
                  const std::vector<std::vector<double>>& voxels, double voxel) {
   int met = 0;
@@ -142,7 +142,7 @@ TEST(ImportScan, MuscleAndBoneOfAnAbdomenAreWhereTheLabelsAre) {
   const auto ours = depths(folder, "abdomen.yaml", rays, 400.0, {{"muscle"}, {"bone"}});
   const auto voxels = vdb::test::askScript(
       kOracle, "rays", {labels, ct, "-300", raysFile(folder, rays), "80,81,82,83;77,78"});
-  // Within one voxel, and the steps that both march in.
+  // Within one voxel, plus the step length of both marches.
   EXPECT_GE(expectDepths(ours, voxels, 3.0 + 0.3), 12);
 }
 
@@ -161,8 +161,8 @@ TEST(ImportScan, AShellIsFeltOnBothFacesAndItsCoreReachedThroughItAlone) {
   ASSERT_EQ(core["within"], "vertebra shell");
   ASSERT_EQ(core["touches"].size(), 1U);
 
-  // Through the middle of one of the three vertebrae, from three sides and out at the other. Along
-  // z the next ones are 18 mm and more away.
+  // Through the middle of one of the three vertebrae, from three sides and out at the opposite
+  // side. Along z the others are 18 mm and more away.
   const Vec3 middle(-25.5, -156.0, -64.2);
   const auto reach = [](int side) { return side / 2 == 2 ? 16.5 : 45.0; };
   const auto point = [](const Vec3& p) {
@@ -181,14 +181,14 @@ TEST(ImportScan, AShellIsFeltOnBothFacesAndItsCoreReachedThroughItAlone) {
     }
     return std::pair(order, peak);
   };
-  for (const int side : {0, 3, 4}) {  // one of each axis
+  for (const int side : {0, 3, 4}) {  // one side for each axis
     Vec3 way(0.0);
     way[side / 2] = side % 2 == 0 ? 1.0 : -1.0;
     const auto [order, peak] =
         felt("v.yaml", middle - reach(side) * way, middle + reach(side) * way);
     SCOPED_TRACE("side " + std::to_string(side));
     ASSERT_GE(order.size(), 5U);
-    // Nowhere is the core next to what is outside.
+    // The core is nowhere next to the outside.
     for (std::size_t n = 1; n < order.size(); ++n) {
       EXPECT_FALSE(order[n] == "vertebra core" && order[n - 1] != "vertebra shell");
       EXPECT_FALSE(order[n - 1] == "vertebra core" && order[n] != "vertebra shell");
@@ -196,13 +196,13 @@ TEST(ImportScan, AShellIsFeltOnBothFacesAndItsCoreReachedThroughItAlone) {
     const auto in = std::find(order.begin(), order.end(), "vertebra core");
     ASSERT_NE(in, order.end());
     const auto n = static_cast<std::size_t>(in - order.begin());
-    // The shell's outer face, its inner face, and on the far side the other way round.
+    // The shell's outer face, its inner face, and on the far side in reverse order.
     EXPECT_NEAR(peak[n - 2], 3.0, 0.05);
     EXPECT_NEAR(peak[n - 1], 3.0, 0.05);
     EXPECT_NEAR(peak[n], 2.0, 0.05);
   }
 
-  // Bone as the project's table has it lets nothing in: felt from outside and from within.
+  // With the project's table, bone stays closed: it is felt from outside and from within.
   (void)run(folder, {"import", kData + "/vertebra/subregions.nii.gz", "--labels", "49,50",
                      "--names", "names.csv", "--region", "bone shell=49", "--region",
                      "bone core=50", "-o", "closed.yaml", "--json"});

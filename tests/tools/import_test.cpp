@@ -1,4 +1,4 @@
-// palpate import: scenes of label images that the tests write.
+// palpate import: scenes from label images that the tests write.
 
 #include <cmath>
 #include <functional>
@@ -13,7 +13,7 @@ using vdb::test::bytesOf;
 using vdb::test::gzipped;
 using vdb::test::NiftiFile;
 
-/// A label image in `folder`, voxels of 1 mm with the middle one at the origin.
+/// Writes a label image to `folder`, with voxels of 1 mm, the middle one at the origin.
 std::string writeLabels(const TempFolder& folder, const std::string& name, int size,
                         const std::function<double(int, int, int)>& label) {
   NiftiFile file;
@@ -35,7 +35,7 @@ std::string writeLabels(const TempFolder& folder, const std::string& name, int s
                      std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-/// A leg: body of radius 18 mm, muscle from 13 mm, bone from 6 mm, all along z; 41 voxels long.
+/// A leg along z: a body of radius 18 mm, muscle within 13 mm, bone within 6 mm; 41 voxels long.
 void writeLeg(const TempFolder& folder) {
   (void)writeLabels(folder, "leg.nii.gz", 41, [](int x, int y, int) {
     const double r = std::hypot(x, y);
@@ -75,15 +75,15 @@ TEST(Import, AProbeGoesThroughSkinFatAndMuscleAndStopsAtTheBone) {
   EXPECT_EQ(muscle["labels"], Json::array({1}));
   EXPECT_EQ(find(json["regions"], "femur")->at("tissue"), "bone");
   EXPECT_EQ(find(json["regions"], "soft_tissue")->at("tissue"), "skin, fat");
-  EXPECT_EQ(json["ports"], 2);  // into the skin and the muscle, none into the bone
+  EXPECT_EQ(json["ports"], 2);  // into the skin and the muscle, not into the bone
 
-  // Along y at 10 mm/s: slower than any damping matters, so that a wall opens at its force.
+  // Along y at 10 mm/s: slow enough to neglect damping, so that a wall opens at its force.
   const CommandResult touch = runPalpate({"touch", "leg.yaml", "--insert", "0,30,0", "0,-9,0",
                                           "--speed", "10mm/s", "--trace", "t.csv", "--json"},
                                          folder.path());
   ASSERT_EQ(touch.exit_code, 0) << touch.err;
   std::vector<std::string> order;
-  std::vector<double> entered;  // [mm] y of the proxy at each first tick of a region
+  std::vector<double> entered;  // [mm] y of the proxy in the first tick in each region
   double last_y = 0.0;
   double hip = 0.0;
   const std::vector<std::string> rows = linesOf(textOf(folder.path("t.csv")));
@@ -98,12 +98,12 @@ TEST(Import, AProbeGoesThroughSkinFatAndMuscleAndStopsAtTheBone) {
   }
   ASSERT_EQ(order, (std::vector<std::string>{"outside", "soft_tissue", "vastus muscle"}));
   EXPECT_NEAR(hip, -9.0, 0.1);
-  // It stands on the bone: its surface is between the centers at 5 and 6 mm.
+  // The needle rests on the bone: the surface is between the centers at 5 and 6 mm.
   EXPECT_NEAR(last_y, 5.5, 0.5);
 
-  // The peak in front of each wall is what its port opens at; friction acts along the wall only. A
-  // needle in the fat feels its cutting force as well, and friction along the part of its shaft
-  // that is in.
+  // The peak in front of each wall is its port's opening force; friction acts only along the wall.
+  // In the fat a needle also feels the cutting force, and friction along the part of its shaft that
+  // is inside.
   const Json told = parseOnly(touch);
   const std::map<std::string, double> peak = [&] {
     std::map<std::string, double> of;
@@ -180,7 +180,7 @@ TEST(Import, IslandsAreToldAndChangedOnRequest) {
   EXPECT_TRUE(changed["islands"].empty());
   EXPECT_EQ(find(changed["regions"], "label_1")->at("pieces"), 1);
   EXPECT_NE(textOf(folder.path("new.yaml")).find("\"new.labels.nii.gz\""), std::string::npos);
-  // What was written is a label image with the same voxels, but for the two.
+  // The output is a label image with the same voxels, except the two changed ones.
   const Json again = imported(folder, {"new.labels.nii.gz", "--dry-run"});
   EXPECT_EQ(again["size"], changed["size"]);
   EXPECT_EQ(find(again["regions"], "label_1")->at("voxels"),
@@ -208,7 +208,7 @@ TEST(Import, TheSkinIsFoundInGrayValues) {
       imported(folder, {"l.nii.gz", "--image", "ct.nii.gz", "--skin", "-300", "-o", "s.yaml"});
   const Json gap = *find(json["regions"], "soft_tissue");
   const Json label = *find(json["regions"], "label_1");
-  // The ball of 11, its cavity filled, without the ball of 5 and without the table.
+  // The ball of 11, with its cavity filled, without the ball of 5 and without the table.
   std::uint64_t expected = 0;
   for (int x = -15; x <= 15; ++x) {
     for (int y = -15; y <= 15; ++y) {
@@ -222,7 +222,7 @@ TEST(Import, TheSkinIsFoundInGrayValues) {
   EXPECT_EQ(label["within"], "soft_tissue");
   EXPECT_NE(textOf(folder.path("s.yaml")).find("threshold: {image: body, above: -300"),
             std::string::npos);
-  // The scene that came of it means the same: what is at these places.
+  // The resulting scene agrees: query the regions at these places.
   const CommandResult query = runPalpate(
       {"query", "s.yaml", "--json", "--at", "0,0,0", "7,0,0", "0,10,0", "0,12.5,0", "0,-14,0"},
       folder.path());
@@ -297,7 +297,7 @@ TEST(Import, TheProjectsTableGivesEveryNumberASourceAndFitsTheNamesInUse) {
   for (const Json& region : json["regions"]) {
     EXPECT_EQ(region["tissue"], tissue_of.at(region["name"])) << region["name"];
   }
-  // Each line about a number says what it is based on.
+  // Each line with a number says where the number comes from.
   for (const std::string& line : linesOf(textOf(folder.path("s.yaml")))) {
     if (!line.starts_with("  #   ")) continue;
     const bool is_sourced = line.find(": measured: ") != std::string::npos ||
@@ -311,7 +311,7 @@ TEST(Import, TheProjectsTableGivesEveryNumberASourceAndFitsTheNamesInUse) {
 TEST(Import, StiffnessComesFromCtNumbersOnRequest) {
   const TempFolder folder;
   writeLeg(folder);
-  // A CT of it: air, fat, muscle that is dense in front and fatty behind, bone that is softer
+  // A CT of it: air, fat, muscle that is dense in front and fatty behind, and bone that is softer
   // behind.
   (void)writeLabels(folder, "ct.nii.gz", 41, [](int x, int y, int) {
     const double r = std::hypot(x, y);
@@ -338,7 +338,8 @@ TEST(Import, StiffnessComesFromCtNumbersOnRequest) {
   EXPECT_NE(textOf(folder.path("b.yaml")).find("bone: {stiffness: {image: ct, transfer: "),
             std::string::npos);
 
-  // What is felt at places whose neighbors have the same CT number: the transfer function of it.
+  // At places whose neighbors have the same CT number, the stiffness is the transfer function of
+  // that number.
   for (const std::string& file : {std::string("s.yaml"), std::string("b.yaml")}) {
     const CommandResult query = runPalpate(
         {"query", file, "--json", "--at", "0,9.5,0", "0,-9.5,0", "0,15.5,0", "0,2.5,0", "0,-2.5,0"},
@@ -348,14 +349,14 @@ TEST(Import, StiffnessComesFromCtNumbersOnRequest) {
     const auto stiffness = [&](std::size_t n, const char* of) {
       return points[n][of]["stiffness_N_per_m"].get<double>();
     };
-    // 16 bits for the whole span of the table's points: far below 0.1 N/m.
+    // 16 bits for the range of the table's points: the error is far below 0.1 N/m.
     EXPECT_NEAR(stiffness(0, "content"), 156.0, 0.1);
     EXPECT_NEAR(stiffness(1, "content"), 65.5 + 75.0 / 150.0 * (156.0 - 65.5), 0.1);
     EXPECT_NEAR(stiffness(2, "content"), 65.5, 0.1);
     EXPECT_NEAR(stiffness(3, "wall"), 2000.0, 0.1);
     EXPECT_NEAR(stiffness(4, "wall"), 1000.0, 0.1);
   }
-  // An image that is not a CT, or does not reach as far as the labels, is reported.
+  // An image that is not a CT, or does not cover the labels, is reported.
   (void)writeLabels(folder, "mr.nii.gz", 21, [](int x, int y, int z) { return 100 + x + y + z; });
   const CommandResult told = runPalpate(
       {"import", "leg.nii.gz", "--image", "mr.nii.gz", "--hounsfield", "--dry-run"}, folder.path());
@@ -375,7 +376,7 @@ TEST(Import, LabelsWithoutNamesAreToldToHaveOneTissue) {
   EXPECT_EQ(named.err.find("taken for"), std::string::npos) << named.err;
 }
 
-/// What each label of a report is, by its name or else its number.
+/// The tissue of each label in a report, by the label's name or else its number.
 std::map<std::string, std::string> tissuesIn(const Json& json) {
   std::map<std::string, std::string> of;
   for (const Json& label : json["labels"]) {
@@ -400,7 +401,7 @@ TEST(Import, WhatFitsNoTissueIsListedWithItsVolumeAndGivenOneOnRequest) {
   };
   const Json plain = with({});
   ASSERT_EQ(plain["unmatched"].size(), 3U);
-  // 5 slices of 21 x 21 voxels of 1 mm; of the last label one.
+  // 5 slices of 21 x 21 voxels of 1 mm; one slice for the last label.
   EXPECT_NEAR(plain["unmatched"][0]["volume_m3"].get<double>(), 5 * 441e-9, 1e-15);
   EXPECT_EQ(plain["unmatched"][2]["name"], "seen nowhere");
   EXPECT_NEAR(plain["unmatched"][2]["volume_m3"].get<double>(), 441e-9, 1e-15);
@@ -424,9 +425,9 @@ TEST(Import, WhatFitsNoTissueIsListedWithItsVolumeAndGivenOneOnRequest) {
                                        {"femur", "bone"},
                                        {"seen nowhere", "muscle"}}));
   EXPECT_EQ(find(given["regions"], "R-C-X")->at("why"), "--tissue 1=liver");
-  // The last one wins, whatever a name says.
+  // The last option wins, whatever a name says.
   EXPECT_EQ(tissuesIn(with({"--tissue", "3=fat", "--tissue", "2-3=brain"}))["femur"], "brain");
-  // Regions that are joined go by their own name, or by what all of their labels are.
+  // Joined regions are judged by their own name, or by a tissue that all of their labels share.
   const Json joined = with({"--region", "bones=2-3", "--region", "rest=1,4"});
   EXPECT_EQ(find(joined["regions"], "bones")->at("tissue"), "bone");
   EXPECT_EQ(joined["labels"].size(), 4U);
@@ -472,7 +473,7 @@ TEST(Import, AirThatReachesTheBorderIsOutside) {
     EXPECT_EQ(tissuesIn(json).at("Air"), "air");
     EXPECT_NE(textOf(folder.path("s.yaml")).find("# Air ("), std::string::npos);
   }
-  // Without a body both are outside; with one, what is in it must not become flesh.
+  // Without a body both are outside; with one, the part inside it must not become flesh.
   const Json query = parseOnly(
       runPalpate({"query", "s.yaml", "--json", "--at", "0,0,0", "0,8,0", "0,14,0"}, folder.path()));
   EXPECT_EQ(query["points"][0]["region"], "outside");
@@ -511,7 +512,7 @@ TEST(Import, TheSuggestedTouchIsOneThatAHandCanHold) {
   for (const Json& region : told["regions"])
     peak = std::max(peak, region["peak_force_N"].get<double>());
   EXPECT_GT(told["regions"].size(), 2U);
-  // A millimeter into a wall of at most 2000 N/m, on top of what the needle feels on its way.
+  // A millimeter into a wall of at most 2000 N/m, in addition to the forces on the way.
   EXPECT_LT(peak, 5.0);
 }
 
@@ -543,7 +544,7 @@ TEST(Import, RangesOfLabelsAreThoseOfBakeToo) {
 
 TEST(Import, InfoCountsManyLabelsWithoutNames) {
   const TempFolder folder;
-  // 125 parcels of 5^3 voxels, and gray values of as many kinds.
+  // 125 parcels of 5^3 voxels, and gray values with as many different numbers.
   const auto parcel = [](int x, int y, int z) {
     return 1 + (x + 12) / 5 + 5 * ((y + 12) / 5) + 25 * ((z + 12) / 5);
   };
@@ -565,7 +566,7 @@ TEST(Import, AStopLeavesNothingBehind) {
   (void)writeLabels(folder, "l.nii.gz", 200,
                     [](int x, int y, int z) { return (x * y * z) % 97 == 0 ? 1 : 0; });
   std::filesystem::rename(folder.path("l.nii.gz"), folder.path("big.nii.gz"));
-  // It talks once it has read the image, which has no unit.
+  // It prints a note once it has read the image, which has no unit.
   const CommandResult result = runInterrupted(
       {"import", "big.nii.gz", "--labels", "1,1", "--min-island", "3", "-o", "s.yaml"},
       folder.path(), SIGINT);
@@ -577,7 +578,7 @@ struct Bad {
   std::vector<std::string> arguments;
   int exit_code;
   std::string code;
-  std::string says;  // part of the message
+  std::string says;  // a part of the message
 };
 
 void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.code << " " << bad.says; }

@@ -1,5 +1,5 @@
-// palpate import --to: the way it finds is open in the voxels, and is felt as predicted; none is
-// refused that there is.
+// palpate import --to: the way that it finds is open in the voxels, and is felt as predicted; if
+// there is a way, it finds one.
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +22,8 @@ constexpr double kInner = 19.0;  // of the bone
 constexpr double kTarget = 4.0;
 constexpr int kBrainLabel = 1, kBoneLabel = 2, kTargetLabel = 3, kVesselLabel = 4, kFatLabel = 5;
 
-/// A head: brain in a skull with a round opening, a target off its center, and a vessel that runs
-/// past.
+/// A head: brain in a skull with a round opening, a target off its center, and a vessel beside the
+/// way.
 struct Head {
   Vec3 opening{0.0, 0.0, 1.0};  ///< unit, from the origin
   double half_angle = 0.5;      ///< [rad] of the opening; below 0: none
@@ -79,7 +79,7 @@ int labelAt(const Image& image, const Vec3& mm) {
       image.at(static_cast<int>(index.x), static_cast<int>(index.y), static_cast<int>(index.z)));
 }
 
-/// [mm] of the way in each label; nothing where it meets bone or the vessel.
+/// [mm] Length of the way in each label; nothing if it meets bone or the vessel.
 std::optional<std::map<int, double>> walked(const Image& image, const Vec3& from, const Vec3& to) {
   constexpr double kStep = 0.05;
   std::map<int, double> lengths;
@@ -93,7 +93,7 @@ std::optional<std::map<int, double>> walked(const Image& image, const Vec3& from
   return lengths;
 }
 
-/// [mm] From the line to the nearest voxel center of bone or vessel.
+/// [mm] Distance from the line to the nearest voxel center of bone or vessel.
 double clearanceOf(const Image& image, const Vec3& from, const Vec3& to) {
   double nearest = 1e9;
   for (int k = 0; k < image.size[2]; ++k) {
@@ -123,7 +123,7 @@ Head randomHead(std::mt19937& random) {
   head.target = 10.0 * share(random) * vdb::test::direction(random);
   if (share(random) < 0.5) {
     head.along = vdb::test::direction(random);
-    // Never through the target.
+    // The vessel must not pass through the target.
     const Vec3 aside = glm::normalize(
         glm::cross(head.along, std::abs(head.along.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0)));
     head.vessel = head.target + (kTarget + 3.0 + 4.0 * share(random)) * aside;
@@ -159,11 +159,11 @@ TEST(ImportWay, IsOpenInTheVoxelsAndRefusedOnlyWhereNoneIs) {
     const Vec3 to = pointOf(way["to_m"]);
     EXPECT_EQ(labelAt(image, from), 0);
     EXPECT_EQ(labelAt(image, to), kTargetLabel);
-    // The deepest voxel of a ball is its middle, to within a voxel.
+    // The deepest voxel of a ball is its middle, within a voxel.
     EXPECT_LT(glm::length(to - head.target), 1.8);
     const auto lengths = walked(image, from, to);
     ASSERT_TRUE(lengths);
-    // Voxels are cubes of 1 mm: their corners are 0.87 mm off their centers.
+    // Voxels are cubes of 1 mm: their corners are 0.87 mm from their centers.
     if (way["clearance_m"] > 0.0) {
       EXPECT_GE(clearanceOf(image, from, to), 2.0 - 0.87);
     }
@@ -173,7 +173,7 @@ TEST(ImportWay, IsOpenInTheVoxelsAndRefusedOnlyWhereNoneIs) {
     for (const Json& part : way["parts"]) {
       told[numbers.at(part["region"])] += 1e3 * part["length_m"].get<double>();
     }
-    // It looks every half voxel.
+    // The search samples every half voxel.
     for (const auto& [label, length] : told) EXPECT_NEAR(length, lengths->at(label), 1.0) << label;
   }
   EXPECT_GE(found, 8);
@@ -187,7 +187,7 @@ TEST(ImportWay, TheForceIsAsPredicted) {
   const CommandResult result = planned(folder, imageOf(head));
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const Json way = parseOnly(result)["way"];
-  // Through the opening: 7 mm of fat, 15 mm less 4 of brain, 4 mm of the target, to within voxels.
+  // Through the opening: 7 mm of fat, 15 - 4 mm of brain, 4 mm of the target, within voxels.
   ASSERT_EQ(way["parts"].size(), 3U);
   EXPECT_EQ(way["parts"][0]["region"], "fat");
   EXPECT_EQ(way["parts"][1]["region"], "brain");
@@ -207,7 +207,7 @@ TEST(ImportWay, TheForceIsAsPredicted) {
   EXPECT_EQ(ticks.back().region, "thalamus");
   double peak = 0.0;
   for (const TracedTick& tick : ticks) peak = std::max(peak, glm::length(tick.force));
-  // A wall opens at the tick after its force; 600 N/m bring 3 mN at 5 um a tick.
+  // A wall opens in the tick after its force is reached; 600 N/m give 3 mN for a tick of 5 um.
   EXPECT_NEAR(peak, 2.0, 0.01);
   EXPECT_NEAR(glm::length(ticks.back().force), way["parts"][2]["force_N"], 0.02);
   // The scene's header suggests the same.

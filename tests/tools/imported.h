@@ -1,6 +1,5 @@
 #pragma once
-// What tests of imported scans need: the command run to its good end, and what a hand feels on a
-// straight way.
+// Shared by tests of imported scans: runs the command, and touches a scene along a straight path.
 
 #include <cstdio>
 
@@ -9,7 +8,7 @@
 
 namespace palpate::testing {
 
-/// What `palpate ARGUMENTS...` says as JSON; it must end well.
+/// The JSON output of `palpate ARGUMENTS...`, which must succeed.
 inline Json run(const TempFolder& folder, const std::vector<std::string>& arguments) {
   const CommandResult result = runPalpate(arguments, folder.path());
   EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
@@ -30,7 +29,7 @@ struct TracedTick {
   std::string region;
 };
 
-/// Straight from point to point [mm] at `speed`, such as "20mm/s".
+/// Touches the scene on straight lines from point to point [mm] at `speed`, such as "20mm/s".
 inline std::vector<TracedTick> touched(const TempFolder& folder, const std::string& scene,
                                        const std::vector<Vec3>& points, const std::string& speed) {
   std::vector<std::string> arguments = {"touch", scene,     "--speed", speed,     "--trace",
@@ -50,8 +49,8 @@ inline std::vector<TracedTick> touched(const TempFolder& folder, const std::stri
   return ticks;
 }
 
-/// Tissues for a shell around a core, whatever they are called: bone that opens at 3 N, and at 2 N
-/// on the way back.
+/// Tissues for a shell around a core, whatever their names: bone that opens at 3 N, and at 2 N on
+/// the way back.
 inline constexpr const char* kBoneThatOpens = R"(palpate_tissues: 1
 tip_radius: {value: 1 mm, basis: assumed, source: a needle}
 stiffest: {value: 2000 N/m, basis: assumed, source: a device}

@@ -1,5 +1,5 @@
 #pragma once
-// What tests of grids that are kept, and of bundles, need.
+// Shared by tests of kept grids and of bundles.
 
 #include <cstdlib>
 
@@ -8,7 +8,7 @@
 
 namespace palpate::testing {
 
-/// The cache of all commands that a test runs, as long as it lives.
+/// The cache folder for all commands that a test runs while this object exists.
 class CacheFolder {
  public:
   explicit CacheFolder(const std::string& folder) { setenv("PALPATE_CACHE", folder.c_str(), 1); }
@@ -26,8 +26,8 @@ inline void importLimb(const TempFolder& folder, double voxel = 1.5) {
   (void)run(folder, {"import", "limb.nii.gz", "--names", "names.csv", "-o", "limb.yaml", "--json"});
 }
 
-/// A touch of `scene` from outside the limb to its axis and back, but for the times of its ticks;
-/// empty if that failed.
+/// A touch of `scene` from outside the limb to its axis and back, without the times of its ticks;
+/// empty if it failed.
 struct Felt {
   std::vector<std::string> ticks;
   std::size_t made = 0;

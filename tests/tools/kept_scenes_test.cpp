@@ -1,5 +1,5 @@
-// Scenes whose grids were kept by an earlier run of the command, by several at once, and by one
-// that was killed.
+// Scenes whose grids were kept by an earlier run of the command, by several at once, or by one that
+// was killed.
 
 #include <sys/wait.h>
 
@@ -41,8 +41,8 @@ TEST(KeptScenes, TheSecondTouchOfAnImportedScanBakesNothingAndFeelsTheSame) {
   EXPECT_EQ(second.kept, kGrids);
   EXPECT_EQ(without.ticks, first.ticks);
   EXPECT_EQ(first.ticks, second.ticks);
-  // Other verbs take the same grids; a scene that is edited only where no grid depends on it does
-  // as well.
+  // Other verbs use the same grids; so does a scene that was edited only in places on which no grid
+  // depends.
   std::string text = textOf(folder.path("limb.yaml"));
   (void)folder.file("edited.yaml", text + "# A word more.\n");
   EXPECT_EQ(feltIn(folder, "edited.yaml", "d.csv").kept, kGrids);
@@ -52,7 +52,7 @@ TEST(KeptScenes, TheSecondTouchOfAnImportedScanBakesNothingAndFeelsTheSame) {
 TEST(KeptScenes, AnEmptyNameMeansThatNothingIsKept) {
   const TempFolder folder;
   importLimb(folder, 2.5);
-  // It is not an absolute path, and goes before what XDG says.
+  // An empty value is not an absolute path, but takes precedence over XDG.
   setenv("PALPATE_CACHE", "", 1);
   setenv("XDG_CACHE_HOME", folder.path("xdg").c_str(), 1);
   EXPECT_EQ(feltIn(folder, "limb.yaml", "a.csv").made, kGrids);
@@ -94,8 +94,8 @@ TEST(KeptScenes, WhoeverIsKilledLeavesNothingThatHarms) {
   int killings = 0;
   for (int i = 0; i < 8; ++i) {
     fs::remove_all(folder.path("cache"));
-    // While a grid is made or written, so many of them being there, or at once; and some time on
-    // from there.
+    // Kill the command when so many grids exist, or at once, and some time later: while a grid is
+    // made or written.
     const std::string grids = std::to_string(static_cast<std::size_t>(i) % kGrids);
     const std::string on = std::to_string(0.005 * static_cast<double>(random() % 6));
     const std::string killed =
@@ -104,7 +104,7 @@ TEST(KeptScenes, WhoeverIsKilledLeavesNothingThatHarms) {
         "pid=$!; while kill -0 $pid 2>/dev/null && "
         "[ $(ls cache 2>/dev/null | grep -c 'vdb$') -lt " +
         grids + " ]; do :; done; sleep " + on + "; kill -9 $pid && wait $pid) 2>/dev/null";
-    // 128 + 9: it ran until it was killed.
+    // 128 + 9: it was still running when it was killed.
     if (WEXITSTATUS(std::system(killed.c_str())) == 137) ++killings;
     const Felt next = feltIn(folder, "limb.yaml", "next.csv");
     EXPECT_EQ(next.result.exit_code, 0) << next.result.err << next.result.out;

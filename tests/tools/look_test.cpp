@@ -1,4 +1,4 @@
-// palpate info, query, explain and render: what they say about known things.
+// palpate info, query, explain and render: their output for known inputs.
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +101,7 @@ TEST(Query, AnImageBetweenItsVoxels) {
   const auto bytes = vdb::test::bytesOf(image);
   const std::string file =
       folder.file("i.nii", {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  // x runs from -3 mm in steps of 2 mm, 10 brighter each: at -0.5 mm it is 12.5.
+  // x starts at -3 mm in steps of 2 mm, each 10 brighter: at -0.5 mm the value is 12.5.
   const CommandResult result = runPalpate({"query", file, "--at", "-0.5,0,0", "40,0,0", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   Json json = parseOnly(result);
@@ -215,7 +215,7 @@ layers:
 
 TEST(Explain, MeasuresWhatTheWorkspaceSaves) {
   const TempFolder folder;
-  // A needle's tip of the device at the top of a ball of 60 mm.
+  // A device like a needle's tip, at the top of a ball of 60 mm.
   const std::string scene = folder.file("s.yaml", R"(palpate: 1
 length: mm
 device: {offset: [0, 0, 30], workspace: {box: {center: [0, 0, 0], size: [20, 20, 20]}}}
@@ -230,7 +230,8 @@ layers:
   const double whole = json["measured"]["whole"]["memory_bytes"].get<double>();
   const double needed = json["measured"]["needed"]["memory_bytes"].get<double>();
   EXPECT_GT(needed, 0.0);
-  // A cap of 23.5 mm of the larger ball (area 11310 mm^2, of the other 5027): less than 2000 mm^2.
+  // A cap of 23.5 mm of the larger ball (its area is 11310 mm^2, the other's 5027): less than 2000
+  // mm^2.
   EXPECT_LT(needed, 0.2 * whole);
   EXPECT_GT(json["measured"]["needed"]["seconds"].get<double>(), 0.0);
   EXPECT_TRUE(jsonOf({"explain", scene})["measured"].is_null());
@@ -253,7 +254,7 @@ TEST(Explain, SheetsAndTheirMaterials) {
   EXPECT_EQ(info["sheets"][1]["wall"], "skin");
 }
 
-// Whatever the fields are made of: explain, info, query and render take every shipped analytic
+// Whatever the fields are made from, explain, info, query and render accept every shipped analytic
 // scene.
 TEST(EveryVerb, TakesTheShippedScenes) {
   for (const char* name : {"container", "csg_part", "valve_tube", "fields", "sponge", "flag",
@@ -291,7 +292,7 @@ ports:
 }
 
 TEST(Explain, WhatIsNeitherShownNorRefutedIsUndecided) {
-  // A port whose extent holds nothing of its wall, as far as was seen.
+  // A port whose extent contains no part of its wall, as far as sampling shows.
   const TempFolder folder;
   const std::string scene = folder.file("s.yaml", R"(palpate: 1
 length: mm
@@ -361,7 +362,7 @@ TEST(Render, ManyRegionsWithLongNamesCanBeToldApart) {
   const auto wide =
       std::count_if(count.begin(), count.end(), [](const auto& c) { return c.second > 400; });
   EXPECT_GE(wide, kRegions);
-  // The legend keeps off the edge.
+  // The legend does not touch the edge.
   for (std::size_t y = 0; y < pixels.height; ++y) {
     for (std::size_t x = pixels.width - 6; x < pixels.width; ++x) {
       ASSERT_EQ(pixels.at(x, y), (std::array<std::uint8_t, 3>{255, 255, 255})) << x << " " << y;
@@ -396,11 +397,11 @@ TEST(Render, SheetsStandInSpace) {
   ASSERT_EQ(with.colors.size(), without.colors.size());
   std::size_t changed = 0;
   std::size_t lo_x = with.width, hi_x = 0, lo_y = with.height, hi_y = 0;
-  // Below the titles, which hold the file's name, and left of the post, whose edges may be found
-  // elsewhere by a share of a pixel.
+  // Below the titles, which contain the file's name, and left of the post, whose edges may be found
+  // a fraction of a pixel elsewhere.
   for (std::size_t y = 60; y < with.height; ++y) {
     for (std::size_t x = 0; x < with.width - 50; ++x) {
-      // More than by where along its ray a surface was found.
+      // A larger difference than an error of the place of a surface along its ray would make.
       if (std::abs(with.at(x, y)[0] - without.at(x, y)[0]) < 40) continue;
       ++changed;
       lo_x = std::min(lo_x, x);
@@ -409,8 +410,8 @@ TEST(Render, SheetsStandInSpace) {
       hi_y = std::max(hi_y, y);
     }
   }
-  // A disk of 24 mm, seen from the side by 35 degrees and from above by 24: an ellipse of which
-  // three quarters of its box are full; all in the right part, where the scene stands in space.
+  // A disk of 24 mm, seen from 35 degrees to the side and 24 degrees above: an ellipse that fills
+  // three quarters of its box. It must lie in the right part, where the view in space is.
   ASSERT_GT(changed, 1000U);
   EXPECT_GT(lo_x, 500U);
   const double width = static_cast<double>(hi_x - lo_x + 1);
@@ -423,7 +424,7 @@ TEST(Render, CutsAlongTheTrace) {
   const TempFolder folder;
   const std::string scene = folder.file("c.yaml", kContainer);
   const std::string trace = folder.path("t.csv");
-  // A path in the plane x = 7 mm, not along any axis.
+  // A path in the plane x = 7 mm, not along an axis.
   ASSERT_EQ(
       runPalpate({"touch", scene, "--insert", "7,-10,30", "7,0,0", "7,10,10", "--trace", trace})
           .exit_code,

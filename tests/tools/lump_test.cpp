@@ -1,5 +1,5 @@
-// data/scenes/lump.yaml: a lump felt through the skin, beside a computation of layered elasticity
-// by other means.
+// data/scenes/lump.yaml: a lump felt through the skin, compared with an independent computation of
+// layered elasticity.
 
 #include <cstdio>
 
@@ -11,10 +11,10 @@
 namespace palpate::testing {
 namespace {
 
-/// [N/m] What a rigid punch of 5 mm feels on these layers (lump_oracle.py).
+/// [N/m] Stiffness of these layers under a rigid punch of 5 mm (lump_oracle.py).
 double punch(const std::string& layers) {
-  // Soft tissue keeps its volume; just below 0.5 the oracle's equations are those of the limit to
-  // 1e-3.
+  // Soft tissue is incompressible; slightly below 0.5, the oracle's equations agree with that limit
+  // to 1e-3.
   const std::string command = "/usr/bin/python3 '" + test::sourceFolder() +
                               "/tests/tools/lump_oracle.py' 0.005 0.4999 " + layers;
   FILE* pipe = popen(command.c_str(), "r");
@@ -24,7 +24,7 @@ double punch(const std::string& layers) {
   return stiffness;
 }
 
-/// [N] Pressed `depth` [m] at (x, 0).
+/// [N] Force when pressed `depth` [m] at (x, 0).
 double felt(const ScenePtr& scene, double x, double depth) {
   const auto renderer = makeRenderer(scene);
   (void)renderer->update({.position = {x, 0.0, 0.005}});
@@ -39,8 +39,8 @@ TEST(Lump, TheForceRisesOverItAsLayeredElasticityHasIt) {
   for (const double depth : {0.2e-3, 1e-3, 2e-3}) {
     EXPECT_NEAR(felt(scene, 0.06, depth), beside * depth, 0.01 * beside * depth);
     EXPECT_NEAR(felt(scene, 0.0, depth), over * depth, 0.01 * over * depth);
-    // The rise itself, within 5 %; 2 % is what the punch's pressure, taken as that on a half-space,
-    // leaves.
+    // The rise itself, within 5 %; of this, 2 % come from taking the punch's pressure as that on a
+    // half-space.
     const double rise = felt(scene, 0.0, depth) - felt(scene, 0.06, depth);
     EXPECT_NEAR(rise, (over - beside) * depth, 0.03 * (over - beside) * depth);
   }
@@ -50,8 +50,8 @@ TEST(Lump, OtherStacksAgreeToo) {
   struct Row {
     const char* oracle;
     const char* layers;
-    double within;  ///< share; the thinner the top layer, the less is the pressure that on a
-                    ///< half-space
+    double within;  ///< relative tolerance; the thinner the top layer, the less the pressure
+                    ///< resembles that on a half-space
   };
   for (const Row& row : {
            Row{"400,0.005 4000", "{point: [0, 0, -5], normal: [0, 0, 1]}", 0.03},

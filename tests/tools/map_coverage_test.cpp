@@ -6,7 +6,7 @@
 namespace palpate::testing {
 namespace {
 
-/// 12 voxels of `voxel` [mm] a side, about `center` [mm]; gray values of 0 and 100.
+/// An image of 12 voxels of `voxel` [mm] a side, about `center` [mm]; gray values 0 and 100.
 std::string image(double center, double voxel) {
   vdb::test::NiftiFile file;
   file.dim = {12, 12, 12};
@@ -19,7 +19,7 @@ std::string image(double center, double voxel) {
 
 class MapCoverage : public ::testing::Test {
  protected:
-  /// A ball of 10 mm whose stiffness is a map out of that image.
+  /// Writes a ball of 10 mm whose stiffness is a map from that image.
   void write(const std::string& nifti, const std::string& more = {}) {
     (void)folder_.file("gray.nii", nifti);
     (void)folder_.file(
@@ -39,10 +39,10 @@ class MapCoverage : public ::testing::Test {
 };
 
 TEST_F(MapCoverage, AMapElsewhereIsToldByTouchCheckAndExplain) {
-  write(image(500.0, 2.0));  // half a meter away: nothing was said
+  write(image(500.0, 2.0));  // half a meter away
   const CommandResult touched = touch();
   EXPECT_EQ(touched.exit_code, 0) << touched.err;
-  // From 10 mm, the ball's end, to 500 - 6 * 2 mm, the map's.
+  // From 10 mm, the end of the ball, to 500 - 6 * 2 mm, the beginning of the map.
   EXPECT_NE(touched.err.find("the map of ball/stiffness"), std::string::npos) << touched.err;
   EXPECT_NE(touched.err.find("does not reach its layer: it lies 478 mm away"), std::string::npos)
       << touched.err;
@@ -59,7 +59,7 @@ TEST_F(MapCoverage, AMapOfHalfItsLayerIsTold) {
   write(image(12.0, 2.0));  // from x = 0 on
   const Json explained = parseOnly(run({"explain", "scene.yaml", "--json"}));
   ASSERT_EQ(explained["map_gaps"].size(), 1U);
-  // Half of a ball; of 17 planes of places one lies within it.
+  // Half of the ball is covered; of 17 planes of sample places one more or less counts.
   EXPECT_NEAR(explained["map_gaps"][0]["share"], 0.5, 0.06);
   EXPECT_NE(touch().err.find("% of its layer"), std::string::npos);
   const Json checked = parseOnly(run({"check", "scene.yaml", "--json"}));
@@ -67,7 +67,7 @@ TEST_F(MapCoverage, AMapOfHalfItsLayerIsTold) {
 }
 
 TEST_F(MapCoverage, MetersReadAsMillimetersAreDoubted) {
-  write(image(0.0, 0.002));  // an image whose author counted in meters
+  write(image(0.0, 0.002));  // an image whose author used meters
   const std::string said = touch().err;
   EXPECT_NE(said.find("times as long as the layer: is its length unit right"), std::string::npos)
       << said;

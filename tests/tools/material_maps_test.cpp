@@ -1,5 +1,5 @@
-// Maps of materials through the command: told by explain, query and info, written by bake, read
-// back the same.
+// Maps of materials through the command: reported by explain, query and info, written by bake, and
+// read back unchanged.
 
 #include "tools/helpers.h"
 #include "vdb/nifti_writer.h"
@@ -7,8 +7,8 @@
 namespace palpate::testing {
 namespace {
 
-/// 16^3 voxels of 2 mm, about the origin; gray values from 0 to 150, rising along x, in waves along
-/// y.
+/// 16^3 voxels of 2 mm, about the origin; gray values from 0 to 150, rising along x, with waves
+/// along y.
 std::string grayImage(const TempFolder& folder) {
   vdb::test::NiftiFile file;
   file.dim = {16, 16, 16};
@@ -79,7 +79,7 @@ TEST_F(MaterialMapFiles, QueryTellsTheValuesOfThePlace) {
   const auto stiffness = [&](int i) {
     return points[static_cast<std::size_t>(i)]["wall"]["stiffness_N_per_m"].get<double>();
   };
-  // 9 a voxel along x: 10 mm are 45 of 150 of 700 N/m.
+  // 9 per voxel along x: 10 mm are 45 of 150, of a range of 700 N/m.
   EXPECT_NEAR(stiffness(1) - stiffness(0), 45.0 / 150.0 * 700.0, 0.05);
   EXPECT_GT(points[0]["content"]["viscosity_Ns_per_m"].get<double>(), 1.0);
 }
@@ -103,7 +103,7 @@ TEST_F(MaterialMapFiles, BakeWritesThemAndASceneReadsThemBackTheSame) {
     EXPECT_TRUE(grid["metadata"].contains("unit"));
   }
 
-  // The same body out of the file, surface and all: as it is felt from the maps of the image.
+  // The same body from the file, surface and all: it feels the same as with the maps of the image.
   const auto grid = [](const std::string& name) {
     return "{grid: {file: body.vdb, name: " + name + "}}";
   };
@@ -128,7 +128,7 @@ TEST_F(MaterialMapFiles, BakeWritesThemAndASceneReadsThemBackTheSame) {
     ASSERT_EQ(a[10], b[10]) << "region in line " << i;
     ASSERT_EQ(a[12], b[12]) << "event in line " << i;
     is_inside = is_inside || a[10] == "ball";
-    // Place and scale of the voxels come back rounded once, to the last bit of a double.
+    // Place and scale of the voxels are rounded once when written, to the last bit of a double.
     for (std::size_t c = 7; c < 10; ++c) ASSERT_NEAR(std::stod(a[c]), std::stod(b[c]), 1e-9) << i;
   }
   EXPECT_TRUE(is_inside) << "the port opened";

@@ -1,4 +1,4 @@
-// What the command writes to, and what it leaves alone.
+// The outputs that the command writes, and the files that it leaves alone.
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -31,7 +31,7 @@ class OutputFilesTest : public ::testing::Test {
     EXPECT_EQ(stat(folder_.path(name).c_str(), &status), 0) << name;
     return status;
   }
-  /// The trace as a plain file: what every other way must bring too.
+  /// The trace as a plain file: every other kind of output must contain the same.
   std::string plainTrace() {
     EXPECT_EQ(touch({"--trace", "plain.csv"}).exit_code, 0);
     return textOf(folder_.path("plain.csv"));
@@ -53,7 +53,7 @@ TEST_F(OutputFilesTest, APipeIsWrittenAndStaysAPipe) {
     const CommandResult result =
         touch(force ? std::vector<std::string>{"--trace", "pipe", "--force"}
                     : std::vector<std::string>{"--trace", "pipe"});
-    // If it was not opened, the reader still waits for somebody.
+    // If the command did not open the pipe, its reader is still waiting.
     const int other_end = open(folder_.path("pipe").c_str(), O_WRONLY | O_NONBLOCK);
     if (other_end >= 0) close(other_end);
     reader.join();
@@ -65,7 +65,8 @@ TEST_F(OutputFilesTest, APipeIsWrittenAndStaysAPipe) {
 }
 
 TEST_F(OutputFilesTest, ADeviceIsWrittenAndStaysADevice) {
-  // A node of its own: were it replaced, the machine's would be safe. Only root can make one.
+  // A separate device node: if it were replaced, the machine's own would be safe. Only root can
+  // make one.
   std::string device = "/dev/full";
   if (mknod(folder_.path("null").c_str(), S_IFCHR | 0666, makedev(1, 3)) == 0) {
     EXPECT_EQ(touch({"--trace", "null", "--force"}).exit_code, 0);
@@ -120,7 +121,7 @@ TEST_F(OutputFilesTest, ANewFileHasTheModeThatTheMaskLeaves) {
 }
 
 TEST_F(OutputFilesTest, WhatCanBeForeseenIsNotFollowed) {
-  // Where the name of the file in the making was known, a link there led the write elsewhere.
+  // If the name of the temporary file were known, a link with that name could redirect the write.
   (void)folder_.file("victim", "untouched");
   bool saw = false;
   const CommandResult result = runPalpate(
@@ -131,7 +132,7 @@ TEST_F(OutputFilesTest, WhatCanBeForeseenIsNotFollowed) {
         saw = true;
         const std::string foreseen = folder_.path("t.csv." + std::to_string(process) + ".tmp");
         EXPECT_EQ(symlink(folder_.path("victim").c_str(), foreseen.c_str()), 0);
-        // What is being made is there under another name, and nobody else's.
+        // Meanwhile the temporary file exists under another name, and belongs to this user only.
         int others = 0;
         for (const std::string& name : filesIn(folder_.path())) {
           others += name.starts_with("t.csv.") && name.ends_with(".tmp") ? 1 : 0;
@@ -157,7 +158,8 @@ TEST_F(OutputFilesTest, StandardOutputTakesATraceAndNothingElse) {
 }
 
 TEST_F(OutputFilesTest, StandardInputGivesPointsAndPaths) {
-  // The command is run without a terminal, its input is empty: an empty path is the answer.
+  // The command runs without a terminal and with empty input, so that the answer is that of an
+  // empty path.
   const CommandResult result = runPalpate({"touch", "ball.yaml", "--path", "-"}, folder_.path());
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_NE(result.err.find("empty"), std::string::npos) << result.err;

@@ -1,5 +1,5 @@
-// palpate pack: a scene with its grids in one folder, which is felt the same elsewhere and without
-// its scan.
+// palpate pack: a scene with its grids in one folder, which feels the same at another place and
+// without its scan.
 
 #include "tools/kept_felt.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every file below a folder, as names within it.
+/// Every file below a folder, by its name relative to it.
 std::vector<std::string> allFiles(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -28,7 +28,7 @@ CommandResult pack(const TempFolder& folder, std::vector<std::string> more) {
 TEST(PackedScenes, AreFeltTheSameElsewhereAndWithoutTheirScan) {
   const TempFolder folder;
   importLimb(folder);
-  // Absolute names, as an import of a scan from elsewhere writes them; also in a comment.
+  // Absolute names, as import writes them for a scan elsewhere; also in a comment.
   std::string text = textOf(folder.path("limb.yaml"));
   const std::string name = "limb.nii.gz";
   text.replace(text.rfind(name), name.size(), folder.path(name));
@@ -48,14 +48,14 @@ TEST(PackedScenes, AreFeltTheSameElsewhereAndWithoutTheirScan) {
   }
   for (const std::string& file : files) {
     EXPECT_FALSE(file.ends_with("nii.gz")) << file;
-    // No name of where it was made is in it, whatever the file.
+    // No file in the bundle contains the path where it was made.
     const std::string bytes = textOf(folder.path("limb.bundle/" + file));
     EXPECT_EQ(bytes.find(folder.path()), std::string::npos) << file;
   }
-  // What the import said of where numbers come from is still there.
+  // Remarks of the import on the origin of numbers are kept.
   EXPECT_NE(textOf(folder.path("limb.bundle/scene.yaml")).find("assumed"), std::string::npos);
 
-  // Another place, and nothing else left.
+  // Another place, with all original files gone.
   const TempFolder elsewhere;
   fs::rename(folder.path("limb.bundle"), elsewhere.path("moved"));
   for (const char* gone : {"limb.yaml", "limb.nii.gz", "names.csv"}) fs::remove(folder.path(gone));
@@ -83,7 +83,7 @@ TEST(PackedScenes, AreFeltTheSameElsewhereAndWithoutTheirScan) {
     const CommandResult result = runPalpate(arguments, elsewhere.path());
     EXPECT_EQ(result.exit_code, 0) << arguments[0] << ": " << result.err << result.out;
   }
-  // A bundle is its own scene: packing it again is not for a scene that has lost its scan.
+  // A bundle cannot be packed again, because its scene has lost the scan.
   EXPECT_EQ(pack(elsewhere, {"moved", "-o", "again"}).exit_code, 3);
 }
 
@@ -100,7 +100,7 @@ TEST(PackedScenes, TakeMeshesGridsTablesAndScansOfMaterialsAlong) {
       "v 3 0 0\nv -3 0 0\nv 0 3 0\nv 0 -3 0\nv 0 0 3\nv 0 0 -3\n"
       "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
   (void)folder.file("stone.obj", octahedron);
-  (void)folder.file("in/stone.obj", octahedron);  // of the same name
+  (void)folder.file("in/stone.obj", octahedron);  // the same name as the other file
   (void)folder.file("ball.yaml", kContainer);
   (void)run(folder, {"bake", "ball.yaml", "-o", "ball.vdb", "--voxel", "2", "--json"});
   (void)folder.file("all.yaml", R"(palpate: 1
@@ -153,7 +153,7 @@ TEST(PackedScenes, SayWhatTheyDoNotHold) {
   const CommandResult edited = runPalpate({"explain", "limb/edited.yaml"}, folder.path());
   EXPECT_EQ(edited.exit_code, 3) << edited.err << edited.out;
   EXPECT_NE(edited.err.find("not in the bundle"), std::string::npos) << edited.err;
-  // The picture of a scan that is elsewhere.
+  // A picture of the scan, which is elsewhere now.
   const CommandResult drawn =
       runPalpate({"render", "limb", "-o", "a.png", "--image", name}, folder.path());
   EXPECT_EQ(drawn.exit_code, 3) << drawn.err;
@@ -233,7 +233,7 @@ layers: [{name: stone, inside: {mesh: {file: stone.obj, voxel: 0.5}}, wall: hard
       if (is_gone) {
         fs::remove(hurt);
       } else {
-        // In the middle of a file; of the list, the first hash.
+        // Damage the middle of a file; in the list, the first hash.
         const std::size_t at = name == "pack.json"
                                    ? bytes.find("fnv1a64:", bytes.find("contents")) + 9
                                    : bytes.size() / 2;

@@ -1,4 +1,4 @@
-// Lines of equal distance and forces at rest on a cut plane, against closed forms.
+// Lines of equal distance and forces at rest on a cut plane, compared with closed forms.
 
 #include <cmath>
 
@@ -31,7 +31,7 @@ TEST(DistanceLines, RingsAroundABall) {
     EXPECT_GT(ink(0.012 - 0.002 * k), 0.3) << "of the core, which is nearer";
   }
   EXPECT_GT(ink(0.040), 1.5 * ink(0.038)) << "every fifth is dark";
-  // Two pixels off there is none, whatever the angle between the plane and the surface.
+  // Two pixels away there is no line, whatever the angle between the plane and the surface.
   for (const double y : {0.0, 0.010, 0.020}) {
     const double on = std::sqrt(0.036 * 0.036 - y * y);
     EXPECT_GT(lines.inkAt(kCenter + Vec3(on, y, 0), across, pixel), 0.3) << y;
@@ -59,7 +59,7 @@ TEST(RestForces, ABallPushesOutAsItsWallSays) {
     const Vec3 d = f.at - kCenter;
     EXPECT_NEAR(f.at.y, 0.010, 1e-12);
     const Vec3 want = 400.0 * (0.030 - glm::length(d)) * glm::normalize(d);
-    // 12 N at most: what the solver of the contact leaves, 1e-5 of it, would not move a pixel.
+    // 12 N at most: the error of the contact solver, 1e-5 of that, would not move a pixel.
     EXPECT_LT(glm::length(f.force - want), 1e-4) << d.x << " " << d.z;
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-// The pixels of a PNG file as the command writes it.
+// Reads the pixels of a PNG file written by the command.
 
 #include <zlib.h>
 
@@ -21,7 +21,7 @@ struct Pixels {
   }
 };
 
-/// Of 8 bits a channel, RGB or RGBA, not interlaced; others come back empty.
+/// Supports 8 bits a channel, RGB or RGBA, not interlaced; for others the result is empty.
 inline Pixels pixelsOf(const std::string& png) {
   const auto byte = [&](std::size_t at) { return static_cast<std::uint8_t>(png[at]); };
   const auto number = [&](std::size_t at) {

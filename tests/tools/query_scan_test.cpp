@@ -1,4 +1,4 @@
-// palpate query at points of an oblique scan, against nibabel and scipy.
+// palpate query at points of an oblique scan, compared with nibabel and scipy.
 
 #include <cmath>
 
@@ -15,8 +15,8 @@ void expectTenPointsAsScipyHasThem(const std::string& scan) {
   const vdb::Image image = vdb::readNifti(scan);
   const Vec3 last(image.size[0] - 1, image.size[1] - 1, image.size[2] - 1);
 
-  // Ten places well inside, at thousandths of a millimeter so that both sides read the same
-  // numbers.
+  // Ten places well inside, at whole thousandths of a millimeter so that both programs parse the
+  // same numbers.
   std::vector<std::string> arguments{"query", scan, "--json", "--at"};
   std::string lines;
   for (int i = 0; i < 10; ++i) {
@@ -40,11 +40,11 @@ void expectTenPointsAsScipyHasThem(const std::string& scan) {
   ASSERT_EQ(json["points"].size(), 10U);
   double brightest = 0.0;
   for (std::size_t i = 0; i < 10; ++i) {
-    // The same formula in the same precision; gray values go to some hundreds.
+    // The same formula in the same precision; gray values reach some hundreds.
     EXPECT_NEAR(json["points"][i]["value"].get<double>(), expected[i].at(0), 1e-8) << i;
     brightest = std::max(brightest, expected[i][0]);
   }
-  EXPECT_GT(brightest, 50.0);  // not a comparison of background with background
+  EXPECT_GT(brightest, 50.0);  // this is not a comparison of background only
 }
 
 TEST(QueryScan, TenPointsOfAMadeLimbAreAsScipyHasThem) {

@@ -1,4 +1,4 @@
-// Rays through scenes: what they meet, against closed forms.
+// Rays through scenes: their hits compared with closed forms.
 
 #include "picture/ray_march.h"
 
@@ -40,7 +40,7 @@ TEST(RayMarch, ABallIsSeenAsTheFormulaSays) {
         const double u = glm::dot(d, camera.right);
         const double v = glm::dot(d, camera.up);
         const double off = std::hypot(u, v);
-        // A chord shorter than half a pixel, the least step, may be missed.
+        // A chord shorter than half a pixel, the shortest step, may be missed.
         const double chord = 2.0 * std::sqrt(std::max(0.0, kRadius * kRadius - off * off));
         if (off < kRadius && chord < camera.step) continue;
         const Hit hit = march.cast(x + 0.5, y + 0.5);
@@ -48,8 +48,8 @@ TEST(RayMarch, ABallIsSeenAsTheFormulaSays) {
         if (hit.part == -1) continue;
         const Vec3 normal =
             (u * camera.right + v * camera.up + 0.5 * chord * camera.toward) / kRadius;
-        // The surface is found to 2^-12 of a step, which near the rim turns the normal by up to
-        // some 1e-3.
+        // The surface is found to 2^-12 of a step, which near the silhouette turns the normal by up
+        // to some 1e-3.
         expectNear(hit.color, tools::scaled(tools::regionColor(1), tools::shadeOf(normal, camera)),
                    2e-3, std::to_string(x) + " " + std::to_string(y));
       }
@@ -64,7 +64,7 @@ TEST(RayMarch, SeesThroughLayersInTheirOrder) {
   const Color outer = tools::scaled(tools::regionColor(1), front);
   const Color inner = tools::scaled(tools::regionColor(2), front);
   const Color white{1, 1, 1, 1};
-  // Through the center: walls from within face the viewer as those from outside do.
+  // Through the center: walls seen from within face the viewer just as those seen from outside.
   const auto seen = [&](double a, double b) {
     look.space.opacity = {1.0, a, b};
     return RayMarch(look.space, camera).cast(32.0, 32.0).color;
@@ -79,7 +79,8 @@ TEST(RayMarch, SeesThroughLayersInTheirOrder) {
 
 TEST(RayMarch, TheCutFaceIsFlatAndItsFrontIsGone) {
   Look look(kShells);
-  look.space.plane = tools::planeAcross(1, 0.005, {"mm", 1e-3});  // what is before y = 5 mm
+  // Cuts away everything in front of y = 5 mm
+  look.space.plane = tools::planeAcross(1, 0.005, {"mm", 1e-3});
   const Camera front = look.camera({0, -1, 0}, 64);
   RayMarch march(look.space, front);
   EXPECT_EQ(march.cast(32.0, 32.0).part, 2 * 2) << "the face of the inner layer";
@@ -88,8 +89,8 @@ TEST(RayMarch, TheCutFaceIsFlatAndItsFrontIsGone) {
   EXPECT_EQ(RayMarch(look.space, back).cast(32.0, 32.0).part, 2 * 1 + 1) << "its rounded back";
 }
 
-// The way that a block of rays shares is free for each of them: nothing is seen otherwise than
-// without it.
+// The distance that the rays of a block skip together is free for each of them: the result is the
+// same as without skipping.
 TEST(RandomRays, TheSharedWayHidesNothing) {
   for (const char* name : {"csg_part", "metaballs", "heart", "sponge", "flag", "valve_tube"}) {
     const std::string file = scenePath(std::string(name) + ".yaml");
@@ -118,8 +119,8 @@ TEST(RandomRays, TheSharedWayHidesNothing) {
           const double ry = y + off * std::sin(angle);
           const Hit without = march.cast(rx, ry);
           const Hit with = march.cast(rx, ry, free);
-          // Steps fall elsewhere, so that a chord shorter than the least step is met by one and not
-          // by the other.
+          // Steps end at different places, so that a chord shorter than the shortest step may be
+          // met in one picture and missed in the other.
           if (without.part == with.part) continue;
           const Hit near = march.cast(rx + 0.5, ry + 0.5);
           const Hit other = march.cast(rx - 0.5, ry - 0.5);
@@ -129,7 +130,8 @@ TEST(RandomRays, TheSharedWayHidesNothing) {
         }
       }
     }
-    // A gyroid goes on everywhere, also where another shape cuts it off: no way is far from it.
+    // A gyroid continues everywhere, also where another shape cuts it off: no ray is ever far from
+    // it.
     if (std::string(name) != "sponge") {
       EXPECT_GT(with_way, 40U) << name;
     }
@@ -143,10 +145,11 @@ TEST(RayMarch, ASliceStandsBehindWhatIsSeenThrough) {
   const Camera camera = look.camera({0, -1, 0}, 64);
   RayMarch march(look.space, camera);
   const Color outer = tools::regionColor(1);
-  // 20 mm beside the center: the outer wall, whose normal there has an x of 20/30, then the slice.
+  // 20 mm beside the center: first the outer wall, whose normal there has an x of 20/30, then the
+  // slice.
   const double x = 0.020, radius = 0.030;
   const Vec3 normal(x / radius, -std::sqrt(1.0 - x * x / (radius * radius)), 0.0);
-  constexpr double kFace = 0.97;  // of its color that a flat face keeps
+  constexpr double kFace = 0.97;  // share of its color that a flat face keeps
   const Color seen = march.cast(32.0 + x / camera.step, 32.0).color;
   expectNear(
       seen,
@@ -173,8 +176,8 @@ TEST(RayMarch, LightComesThroughAsWallsLetIt) {
   EXPECT_EQ(light(1, 1, {0, 0, 0}), 1.0) << "what was before it is cut away";
 }
 
-// The whole picture of a ball: white around it, within it what its normal says, finer rays only at
-// its rim.
+// The whole picture of a ball: white around it, inside it the shade that its normal gives, and
+// finer rays only at its silhouette.
 TEST(DrawSpace, ABallIsWhatItsFormulaSays) {
   const Look look(
       "palpate: 1\nlength: mm\nlayers:\n  - {name: ball, inside: {sphere: {center: [0, 0, 0], "
@@ -195,14 +198,14 @@ TEST(DrawSpace, ABallIsWhatItsFormulaSays) {
         ASSERT_EQ(word, 0xFFFFFFU) << x << " " << y;
         ++outer;
       }
-      // Within 3 pixels of the rim the shade changes by more than a pixel's worth, and there is an
+      // Within 3 pixels of the silhouette the shade changes by more within a pixel, and there is an
       // edge.
       if (off > kRadius - 3.0 * camera.step) continue;
       const Vec3 normal = (u * camera.right + v * camera.up +
                            std::sqrt(kRadius * kRadius - off * off) * camera.toward) /
                           kRadius;
       const Color want = tools::scaled(tools::regionColor(1), tools::shadeOf(normal, camera));
-      // Half a step of 8 bits for rounding, and 2e-3 for how near the surface is found.
+      // Half a step of 8 bits for rounding, and 2e-3 for the error of the surface's place.
       const Color got = tools::rgb(word);
       expectNear(got, want, 0.5 / 255.0 + 2e-3, std::to_string(x) + " " + std::to_string(y));
       ++inner;
@@ -212,7 +215,7 @@ TEST(DrawSpace, ABallIsWhatItsFormulaSays) {
   EXPECT_GT(outer, 10000);
 }
 
-// Bands that a tall picture is drawn in leave no seam: a shifted picture has the same pixels.
+// The bands in which a tall picture is drawn leave no seam: a shifted picture has the same pixels.
 TEST(DrawSpace, BandsLeaveNoSeam) {
   const Look look(kShells);
   Camera camera = look.camera({0, -1, 0}, 600);

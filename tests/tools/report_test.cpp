@@ -1,4 +1,4 @@
-// palpate report: one page that needs nothing else, whatever names are in what it reads.
+// palpate report: one self-contained page, whatever names occur in its inputs.
 
 #include <cmath>
 #include <cstdio>
@@ -21,8 +21,8 @@ constexpr const char* kTraceHeader =
     "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_"
     "ns\n";
 
-/// The text of a page without its tags, references read back; "?" first if the tags are not those
-/// of well-formed markup.
+/// The text of a page without its tags and with references resolved; begins with "?" if the tags
+/// are not well-formed.
 std::string readBack(const std::string& page) {
   std::string text;
   std::vector<std::string> open;
@@ -43,7 +43,7 @@ std::string readBack(const std::string& page) {
       } else if (!tag.ends_with('/')) {
         open.push_back(tag.substr(0, tag.find(' ')));
       }
-      text += '\x1F';  // parts one text from the next
+      text += '\x1F';  // separates two texts
       at = end + 1;
     } else if (page[at] == '&') {
       const std::size_t end = page.find(';', at);
@@ -65,7 +65,7 @@ bool hasText(const std::string& read_back, const std::string& text) {
   return read_back.find('\x1F' + text + '\x1F') != std::string::npos;
 }
 
-/// Nothing is fetched from anywhere, and nothing runs.
+/// The page loads nothing from elsewhere, and runs nothing.
 void expectSelfContained(const std::string& page) {
   EXPECT_EQ(page.find("<script"), std::string::npos);
   EXPECT_EQ(page.find("http:"), std::string::npos);
@@ -111,14 +111,14 @@ TEST(Markup, EachSignIsWrittenAsText) {
   EXPECT_EQ(tools::markupText("a<b>&\"c\"'"), "a&lt;b&gt;&amp;&quot;c&quot;&#39;");
   EXPECT_EQ(tools::markupText("Käse \xF0\x9F\xA7\x80"), "Käse \xF0\x9F\xA7\x80");
   const std::string bad = "\xEF\xBF\xBD";
-  EXPECT_EQ(tools::markupText("\x01\x7F"), bad + bad);  // controls
+  EXPECT_EQ(tools::markupText("\x01\x7F"), bad + bad);  // control characters
   EXPECT_EQ(tools::markupText("\xFF"
                               "a"),
-            bad + "a");                                                     // never in UTF-8
-  EXPECT_EQ(tools::markupText("\xC0\xBC"), bad + bad);                      // "<", two bytes long
-  EXPECT_EQ(tools::markupText("\xED\xA0\x80"), bad + bad + bad);            // half of a pair
-  EXPECT_EQ(tools::markupText("\xE2\x82"), bad + bad);                      // cut
-  EXPECT_EQ(tools::markupText("\xF4\x90\x80\x80"), bad + bad + bad + bad);  // above the last
+            bad + "a");                                           // bytes that never occur in UTF-8
+  EXPECT_EQ(tools::markupText("\xC0\xBC"), bad + bad);            // overlong "<"
+  EXPECT_EQ(tools::markupText("\xED\xA0\x80"), bad + bad + bad);  // a lone surrogate
+  EXPECT_EQ(tools::markupText("\xE2\x82"), bad + bad);            // truncated
+  EXPECT_EQ(tools::markupText("\xF4\x90\x80\x80"), bad + bad + bad + bad);  // beyond U+10FFFF
 }
 
 TEST(Markup, Base64AsInItsStandard) {
@@ -132,7 +132,7 @@ TEST(Markup, Base64AsInItsStandard) {
   EXPECT_EQ(tools::base64("foobar"), "Zm9vYmFy");
 }
 
-// Ticks at random: no peak is lost, and work is that of each force held to the next tick.
+// Random ticks: no peak is lost, and work is computed with each force held until the next tick.
 TEST(TickColumns, KeepPeaksAndWorkOfAnyNumberOfTicks) {
   for (const int ticks : {1, 2, 1023, 1024, 1025, 5000}) {
     std::mt19937_64 random(static_cast<std::uint64_t>(ticks));
@@ -172,8 +172,8 @@ TEST(TickColumns, KeepPeaksAndWorkOfAnyNumberOfTicks) {
 
 TEST(Report, ATraceOfKnownForcesAndWork) {
   const TempFolder folder;
-  // 10 mm in steps of 1 mm against 2 N: the hand puts 20 mJ in, and the proxy stays 10 mm behind
-  // it.
+  // 10 mm in steps of 1 mm against 2 N: the hand does a work of 20 mJ, and the proxy stays 10 mm
+  // behind it.
   std::string trace = kTraceHeader;
   for (int i = 0; i <= 10; ++i) {
     trace += rowOf(0.001 * i, 0.001 * i, 0.0, -2.0, "outside", i == 10 ? "in;out" : "");
@@ -214,7 +214,7 @@ TEST(Report, ATouchWithItsSceneShowsBoth) {
             std::string::npos);
   EXPECT_NE(got.page.find("src=\"data:image/png;base64,iVBORw0KGgo"), std::string::npos);
 
-  // A record brings its scene along, as long as that is what it was.
+  // A record refers to its scene, which is shown if it has not changed.
   const ReportedPage record = reported(folder, {"r.npy"});
   ASSERT_EQ(record.result.exit_code, 0) << record.result.err;
   EXPECT_NE(record.text.find("Scene: c.yaml"), std::string::npos);
@@ -250,7 +250,8 @@ TEST(Report, ABenchInTables) {
   }
   EXPECT_NE(got.text.find("A & B, 2 threads"), std::string::npos);
 
-  // What is missing or of another kind is a dash or a question mark, never an end.
+  // Missing values, or values of another type, become a dash or a question mark; the command does
+  // not fail.
   for (const char* results :
        {"[]", "[{}]", "[1, null, [2]]", "[{\"tick_ns\": 7, \"scene\": []}]"}) {
     for (const std::string what : {"contact", "stability", "servo"}) {
@@ -290,14 +291,15 @@ TEST(Report, WhatItCannotReadIsOneError) {
   EXPECT_EQ(runPalpate({"report", "t.csv", "-o", "o.txt"}, folder.path()).exit_code, 2);
 }
 
-/// As a trace writes it.
+/// The name in the form that a trace writes.
 std::string inCsv(const std::string& name) {
   std::string out = "\"";
   for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
   return out + "\"";
 }
 
-// Names of any signs, in a trace and on a page: what is read back from either is the name.
+// Names of arbitrary characters, in a trace and on a page: both return the same name when read
+// back.
 TEST(RandomReports, KeepEveryName) {
   const std::string signs = "<>&\"'ab ,-=/\\\n\t;!\xC3\xA9";
   std::mt19937_64 random(23);
@@ -329,7 +331,7 @@ TEST(RandomReports, KeepEveryName) {
   }
 }
 
-// A trace that is damaged anywhere is read, or refused with an error of input.
+// A trace with damage anywhere is either read, or refused with an error of input.
 TEST(RandomReports, RefuseDamageOrReadIt) {
   const TempFolder folder;
   std::string whole = kTraceHeader;

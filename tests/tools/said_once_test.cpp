@@ -1,5 +1,5 @@
-// What is made from the declarations of scene files and of the command line: it is what is
-// committed, and a key that is added in one place is in all of it.
+// Files generated from the declarations of scene files and of the command line are up to date, and
+// a key that is added at one place appears in all of them.
 
 #include <cstdio>
 #include <filesystem>
@@ -104,7 +104,7 @@ TEST(SaidOnce, AKeyAddedToACopyIsInReaderSchemaPageHelpAndCompletion) {
   EXPECT_EQ(range.line, 3);
   EXPECT_EQ(refused(", squash: 1 mm").code, "scene.number");
   EXPECT_EQ(refused(", squahs: 1").hint, "did you mean 'squash'?");
-  // The vocabulary that it was copied from does not know it.
+  // The vocabulary that it was copied from does not know the new key.
   registry.vocabulary = sceneVocabulary();
   EXPECT_EQ(refused(", squash: 1").code, "scene.unknown_key");
 
@@ -131,7 +131,7 @@ TEST(SaidOnce, TheManualPageIsSetWithoutWarnings) {
   }
 }
 
-/// What bash offers behind these words, the last of which is being written; one on each line.
+/// The completions that bash offers for the last of these words, one on each line.
 std::vector<std::string> offeredByBash(const std::vector<std::string>& words) {
   std::string line = "COMP_WORDS=(";
   for (const std::string& word : words) line += " '" + word + "'";
@@ -151,21 +151,22 @@ TEST(SaidOnce, BashCompletesVerbsOptionsWordsAndKeys) {
             (Words{"constraint", "paper"}));
   EXPECT_EQ(offeredByBash({"palpate", "help", "sc"}), Words{"scene"});
   EXPECT_EQ(offeredByBash({"palpate", "help", "scene", "opens"}), Words{"opens_at"});
-  // Files are left to bash.
+  // Completion of files is left to bash.
   EXPECT_EQ(offeredByBash({"palpate", "touch", "s"}), Words{""});
 }
 
-/// What fish offers behind a line.
+/// The completions that fish offers for a line.
 std::vector<std::string> offeredByFish(const std::string& line) {
   const TempFolder home;
   std::vector<std::string> lines =
       linesOf(printed("HOME=" + home.path() + " fish --no-config -c \"source " + kRoot +
                       "/tools/completion/palpate.fish; complete -C '" + line + "'\""));
-  for (std::string& each : lines) each = each.substr(0, each.find('\t'));  // what it means
+  // Without the descriptions
+  for (std::string& each : lines) each = each.substr(0, each.find('\t'));
   return lines;
 }
 
-/// What zsh offers behind a line.
+/// The completions that zsh offers for a line.
 std::vector<std::string> offeredByZsh(const std::string& line) {
   const TempFolder folder;
   std::filesystem::create_symlink(kRoot + "/tools/completion/palpate.zsh", folder.path("_palpate"));

@@ -38,14 +38,14 @@ struct Place {
   Vec3 out{0.0};  ///< [-] unit, out of it
 };
 
-/// Where rays from all around toward the middle of a box first meet the surface of `field`.
+/// Points where rays from all around towards the middle of a box first meet the surface of `field`.
 std::vector<Place> placesOn(const Field& field, int count) {
   const Box3 box = field.bounds();
   const Vec3 middle = 0.5 * (box.lo + box.hi);
   const double radius = 0.5 * glm::length(box.hi - box.lo);
   std::vector<Place> out;
   for (int i = 0; i < count; ++i) {
-    // Evenly over the sphere: Fibonacci's spiral.
+    // Evenly spread over the sphere: Fibonacci's spiral.
     const double z = 1.0 - (2.0 * i + 1.0) / count;
     const double turn = i * std::numbers::pi * (3.0 - std::sqrt(5.0));
     const double across = std::sqrt(1.0 - z * z);
@@ -98,7 +98,7 @@ void expectCalm(const ScenePtr& scene, const std::string& name) {
 TEST(ScanLoops, ABakedSkullIsAsCalmAsItsOracle) {
   const vdb::test::HeadCt ct = vdb::test::readHeadCt();
   const TempFolder folder;
-  // A cap of the skull, every slice of the scan from above the eyes on.
+  // A cap of the skull: every slice of the scan from above the eyes on.
   (void)vdb::test::writePart(ct, {40, 40, 67}, {215, 215, ct.size[2] - 1}, folder);
   expectCalm(sceneOf(folder.file("skull.yaml", R"(palpate: 1
 length: mm

@@ -116,7 +116,7 @@ elif command == "ring":
     step = 0.02
     for n in range(int(sys.argv[6])):
         angle = 2.0 * numpy.pi * n / int(sys.argv[6])
-        way = numpy.array([numpy.cos(angle), numpy.sin(angle), 0.0])  # in voxels, and in mm: slices are square
+        way = numpy.array([numpy.cos(angle), numpy.sin(angle), 0.0])  # a direction in voxels and in mm alike, because slices are square
         points = middle + (numpy.arange(0.0, 400.0, step)[:, None] - 400.0) * way / spacing
         index = numpy.rint(points).astype(int)
         inside = numpy.all((index >= 0) & (index < labels.shape), axis=1)
@@ -162,7 +162,8 @@ elif command == "borders":
         low = numpy.maximum(place - 6, 0)
         part = mask[tuple(slice(a, b) for a, b in zip(low, place + 7))]
         others = numpy.argwhere(part != mask[tuple(place)]) + low
-        # To the nearest box of a voxel of the other kind; it begins half a voxel from its center.
+        # Distance to the nearest voxel box of the other kind; a box begins half a voxel from its
+        # center.
         gap = numpy.maximum(numpy.abs(others - index) - 0.5, 0.0) * spacing
         print(numpy.sqrt((gap**2).sum(1)).min() if len(gap) else 1e9)
 elif command == "segments":

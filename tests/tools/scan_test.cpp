@@ -1,5 +1,5 @@
-// Scans of all formats through the verbs: what info tells of them, names and colors out of tables,
-// and options that say what files leave open.
+// Scans of all formats through the verbs: the output of info, names and colors from tables, and
+// options for facts that files do not state.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ TEST(Scan, InfoTellsPlaceUnitAndLabelsWithTheirVoxels) {
                                  "lengths in mm", "left, back, up", "affine"}) {
     EXPECT_NE(text.find(says), std::string::npos) << says << "\n" << text;
   }
-  // Another table in its place.
+  // Another table replaces the file's own.
   const std::string table = folder.file("t.txt", "4 other 10 20 30 255\n");
   EXPECT_EQ(infoOf({file, "--names", table})["labels"][1]["name"], "other");
 }
@@ -92,7 +92,7 @@ TEST(Scan, SegmentsAreBakedByTheirNames) {
   ASSERT_EQ(grids.size(), 3U);
   EXPECT_EQ(grids[0]["name"], "left part/surface");
   EXPECT_EQ(grids[2]["name"], "united") << "they touch";
-  // Left is at negative x of RAS: index 6 to 9, half a voxel more on each side.
+  // Left is at negative x in RAS: indices 6 to 9, plus half a voxel on each side.
   const Json ask = parseOnly(
       runPalpate({"convert", "s.vdb", "-o", "left.stl", "--layer", "left part/surface", "--json"},
                  folder.path()));
@@ -101,7 +101,7 @@ TEST(Scan, SegmentsAreBakedByTheirNames) {
 }
 
 // Voxels of 5 mm cannot hold a plate of 1 mm beside a block: every verb that makes the scene's
-// grids says so, and where.
+// grids says so, with the place.
 TEST(Scan, WhatAScenesGridsLoseIsTold) {
   const TempFolder folder;
   std::string voxels = segmentation();
@@ -148,7 +148,7 @@ TEST(Scan, WhatAScenesGridsLoseIsTold) {
 
   const CommandResult fine = runPalpate({"check", scene("1"), "--json"});
   const Json whole = parseOnly(fine)["files"][0];
-  // Four at the plate's corners, which are rounded off.
+  // Four voxels at the plate's corners, which are rounded off.
   EXPECT_LE(whole["grids"][0]["lost_voxels"], 4) << whole;
 }
 

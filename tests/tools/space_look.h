@@ -1,5 +1,5 @@
 #pragma once
-// Scenes in space to look at, and colors to compare.
+// Scenes in space to draw in tests, and comparison of colors.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ inline constexpr const char* kShells =
     "  - {name: outer, inside: {sphere: {center: [0, 0, 0], radius: 30}}}\n"
     "  - {name: inner, inside: {sphere: {center: [0, 0, 0], radius: 12}}}\n";
 
-/// A scene with all that looking at it needs, kept together.
+/// A scene with everything needed to draw it, kept together.
 struct Look {
   explicit Look(const std::string& text)
       : scene(compile(parseScene(text, "test"))),

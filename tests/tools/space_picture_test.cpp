@@ -1,4 +1,4 @@
-// palpate render --view: the files that come out, and what is refused.
+// palpate render --view: the files that it writes, and the options that it refuses.
 
 #include "picture/space_picture.h"
 
@@ -37,8 +37,8 @@ TEST_F(RenderView, StandsInSpace) {
   const Pixels pixels = pixelsOf(textOf(folder_.path("p.png")));
   ASSERT_EQ(pixels.width, 640U);
   ASSERT_EQ(pixels.height, 400U);
-  // A bowl of 80 mm, cut flat 15 mm above its center, from the side: the widest row is wider than
-  // the lot is high by 80 : 55. In its panel, beyond the title and left of the legend.
+  // A bowl of 80 mm, cut flat 15 mm above its center, seen from the side: its widest row is to its
+  // total height as 80 : 55. Only the panel is searched, below the title and left of the legend.
   std::size_t left = pixels.width, right = 0, top = pixels.height, bottom = 0;
   for (std::size_t y = 40; y < pixels.height; ++y) {
     for (std::size_t x = 5; x < 440; ++x) {
@@ -56,7 +56,7 @@ TEST_F(RenderView, StandsInSpace) {
   EXPECT_NEAR(width / height, 80.0 / 55.0, 0.02);
 }
 
-/// Of a WebP file: how often a chunk comes.
+/// How often a chunk occurs in a WebP file.
 int chunksOf(const std::string& webp, const std::string& name) {
   int found = 0;
   for (std::size_t at = 12; at + 8 <= webp.size();) {
@@ -150,7 +150,7 @@ TEST_F(RenderView, ABrokenTraceLeavesNothing) {
   EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"c.yaml", "t.csv"}));
 }
 
-// The same direction by name, axis and numbers is the same picture, byte for byte.
+// The same direction given by name, axis or numbers yields the same picture, byte for byte.
 TEST_F(RenderView, NamesAndNumbersAreTheSameCamera) {
   int number = 0;
   const auto bytes = [&](const std::string& view) {

@@ -1,4 +1,4 @@
-// palpate touch and needles: the summary names every layer that the tip came into, however many in
+// palpate touch with needles: the summary names every layer that the tip entered, however many in
 // one tick.
 
 #include <cmath>
@@ -23,8 +23,8 @@ class TouchNeedle : public ::testing::Test {
 struct Layer {
   const char* region;
   double entry, deepest;  // [m]
-  double rupture;         // [N] 0: its wall stood open
-  double peak;            // [N] less than 0: not looked at
+  double rupture;         // [N] 0: its wall was open
+  double peak;            // [N] negative: not checked
 };
 
 void expectLayers(Json& json, const std::vector<Layer>& layers) {
@@ -46,12 +46,12 @@ void expectLayers(Json& json, const std::vector<Layer>& layers) {
   }
 }
 
-// The hand goes 50 mm in a tick: skin, fat and muscle, each with its own rupture, depth and force,
-// in that tick.
+// The hand goes 50 mm in a single tick through skin, fat and muscle, each of which gets its own
+// rupture, depth and force in that tick.
 TEST_F(TouchNeedle, AHandFarAheadLeavesNoLayerOut) {
   (void)folder_.file("p.csv", "t,x,y,z\n0,0,0,0.005\n0.001,0,0,-0.045\n0.002,0,0,-0.045\n");
   Json json = touch({"--path", "p.csv"});
-  // Each wall is pressed by as much as the hand is beyond it: 45, 31 and 13 mm.
+  // Each wall is pressed by the distance of the hand beyond it: 45, 31 and 13 mm.
   const double skin = 250.0 * 0.045 + 4e4 * 0.045 * 0.045;
   expectLayers(json, {{"outside", 0.0, 0.0, 0.0, 0.0},
                       {"skin", 0.0, 0.002, skin, 0.5},
@@ -64,8 +64,8 @@ TEST_F(TouchNeedle, AHandFarAheadLeavesNoLayerOut) {
   EXPECT_EQ(json["events"].size(), 4U);
 }
 
-// At 50 mm/s the skin gives way when the hand is 5.8 mm deep: in fat. Depths are of the walls, not
-// of the hand.
+// At 50 mm/s the skin opens when the hand is 5.8 mm deep, already in the fat. Depths are those of
+// the walls, not of the hand.
 TEST_F(TouchNeedle, DepthsAreOfTheWallsAndTheTip) {
   Json json = touch({"--insert", "0,0,5", "0,0,-25", "--speed", "50"});
   ASSERT_EQ(json["regions"].size(), 4U) << json["regions"];
@@ -75,7 +75,7 @@ TEST_F(TouchNeedle, DepthsAreOfTheWallsAndTheTip) {
     EXPECT_NEAR(json["regions"][i]["entry_depth_m"], entries[i], 1e-7) << i;
     EXPECT_NEAR(json["regions"][i]["depth_m"], ends[i], 1e-7) << i;
   }
-  // A tick is 50 um: the force is over by as much as that presses.
+  // A tick is 50 um: the force exceeds the limit by what that length presses.
   EXPECT_GE(json["regions"][1]["rupture_N"], 2.8);
   EXPECT_LE(json["regions"][1]["rupture_N"], 2.8 + 50e-6 * (250.0 + 2 * 4e4 * 0.006));
   EXPECT_NEAR(json["regions"][1]["peak_force_N"], 0.5, 1e-9);
@@ -91,7 +91,8 @@ TEST_F(TouchNeedle, TheTableHasTheLayersAndTheirRuptures) {
   }
 }
 
-// 25 mm deep and 3 mm sideways: by the closed form of skin, fat and muscle, and what the tip cuts.
+// 25 mm deep and 3 mm sideways, compared with the closed form for skin, fat and muscle plus the
+// cutting force of the tip.
 TEST_F(TouchNeedle, TheFlankHoldsTheShaftSideways) {
   (void)touch({"--insert", "0,0,5", "0,0,-25", "3,0,-25", "--trace", "t.csv"}, "flank.yaml");
   const auto cells = cellsOf(linesOf(textOf(folder_.path("t.csv"))).back());
@@ -100,7 +101,8 @@ TEST_F(TouchNeedle, TheFlankHoldsTheShaftSideways) {
       6.2e4 * cubes(0.0, 0.003) + 1.5e4 * cubes(0.003, 0.015) + 3.6e4 * cubes(0.015, 0.025);
   const double reach = std::hypot(0.025, 0.003);
   const double shaft = turning / reach * (0.003 / reach) * (0.025 / reach);
-  // Within what comes in on the way sideways; the tip cuts with 0.6 N at most.
+  // Within the part of the shaft that enters during the sideways motion; the tip cuts with 0.6 N at
+  // most.
   EXPECT_GT(-std::stod(cells[7]), 0.98 * shaft);
   EXPECT_LT(-std::stod(cells[7]), 1.02 * shaft + 0.6 + 0.1);
 }

@@ -1,5 +1,5 @@
-// palpate touch --record and palpate replay: what was felt is kept whatever ends the run, NumPy
-// reads it, and it is felt anew bit for bit.
+// palpate touch --record and palpate replay: a record survives however the run ends, NumPy reads
+// it, and a replay gives the same results bit for bit.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -19,7 +19,7 @@
 namespace palpate::testing {
 namespace {
 
-/// A ball that gives way, with friction and something thick in it.
+/// A soft ball with friction and a viscous content.
 constexpr const char* kBall = R"(palpate: 1
 length: mm
 materials:
@@ -107,10 +107,10 @@ TEST_F(TouchRecord, NumPyFindsWhatTheTraceSaysAndItIsFeltAnew) {
       EXPECT_EQ(json["compared"], 1500 - std::stoi(from));
     }
   }
-  // From another folder, too.
+  // Also from another folder.
   EXPECT_EQ(runPalpate({"replay", folder_.path("r.npy")}).exit_code, 0);
 
-  // What is not the same is an answer: no.
+  // If results differ, the answer is negative.
   std::string harder = kBall;
   harder.replace(harder.find("700"), 3, "770");
   (void)folder_.file("harder.yaml", harder);
@@ -148,7 +148,7 @@ TEST_F(TouchRecord, StatesAreOnlyForTheSceneThatWasFelt) {
             0);
   EXPECT_EQ(parseOnly(palpate({"replay", "r.npy", "--from", "300", "--json"}))["begun_at_tick"],
             300);
-  // The same file elsewhere has the states, too.
+  // The same file at another place has the states, too.
   (void)folder_.file("copy.yaml", scene(false));
   EXPECT_EQ(parseOnly(palpate({"replay", "r.npy", "--from", "300", "--scene", "copy.yaml",
                                "--json"}))["begun_at_tick"],
@@ -191,9 +191,10 @@ TEST_F(TouchRecord, WhatGuardedTheLoopIsPartOfTheRecord) {
       ASSERT_EQ(anew.exit_code, 0) << how.back() << ", from " << from << anew.err << anew.out;
       EXPECT_EQ(parseOnly(anew)["begun_at_tick"], std::stoi(from) / 100 * 100);
     }
-    // Without what guarded it the loop is another.
+    // Without its guards the loop behaves differently.
     const Json about = Json::parse(textOf(folder_.path("r.npy.json")));
-    // Not tried: guards that change no force, and scenes that then guard the loop as they say.
+    // Not tried: guards that do not change the force, and scenes that then guard the loop by
+    // themselves.
     const char* key = about["options"]["coupling"] != "" ? "coupling" : "passivity";
     const std::string guard = about["options"][key];
     if (guard != "" && guard != "observe" && how.front() != "own.yaml") {
@@ -238,7 +239,7 @@ TEST_F(TouchRecord, AnInterruptKeepsWhatWasFelt) {
                      folder_.path(), SIGINT);
   EXPECT_EQ(result.out, "");
   EXPECT_NE(result.err.find("r.npy and t.csv"), std::string::npos) << result.err;
-  // It may come before the first tick, and then nothing was felt.
+  // The signal may come before the first tick; then nothing was felt.
   const char* told = facts("r.npy").at(0) == 0.0 ? "no tick was felt" : "the ticks until then";
   EXPECT_NE(result.err.find(told), std::string::npos) << result.err;
   EXPECT_EQ(filesIn(folder_.path()), (std::vector<std::string>{"ball.yaml", "r.npy", "r.npy.json",
@@ -255,7 +256,7 @@ TEST_F(TouchRecord, AKillInTheMiddleLeavesARecordThatIsWhole) {
       folder_.path(), [&](std::string_view, pid_t process) {
         if (sent) return;
         sent = true;
-        // Once some hundred ticks are there.
+        // When some hundred ticks have been written.
         std::error_code failed;
         EXPECT_TRUE(waitUntil([&] {
           return kill(process, 0) != 0 || (std::filesystem::exists(record, failed) &&
@@ -346,7 +347,7 @@ TEST_F(TouchRecord, ARecordThatCannotBeReadIsOneErrorWithItsFile) {
     }
     for (std::size_t f = 0; f < 3; ++f) (void)folder_.file(files[f], f == which ? bytes : good[f]);
     const CommandResult result = palpate({"replay", "r.npy", "--from", "200"});
-    // The same, not the same, or one error that names a file of the record.
+    // Results agree, results differ, or there is one error that names a file of the record.
     EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 1 || result.exit_code == 3)
         << result.exit_code << result.err;
     if (result.exit_code != 3) continue;

@@ -1,5 +1,5 @@
 // palpate touch --set: contents that change while the hand moves; the paper's parameters; presses
-// that miss.
+// that meet nothing.
 
 #include <cmath>
 
@@ -17,7 +17,7 @@ class TouchSet : public ::testing::Test {
     return runPalpate(arguments, folder_.path());
   }
 
-  /// Of the trace, by tick.
+  /// A column of the trace, by tick.
   std::vector<double> column(std::size_t index) {
     std::vector<double> all;
     const auto lines = linesOf(textOf(folder_.path("t.csv")));
@@ -29,7 +29,7 @@ class TouchSet : public ::testing::Test {
   TempFolder folder_;
 };
 
-// Straight through the syrup at 50 mm/s: 4 N.s/m are 0.2 N.
+// Straight through the syrup at 50 mm/s: 4 N.s/m give 0.2 N.
 const std::vector<std::string> kThroughSyrup = {"--insert", "0,0,14",  "0,0,-30", "--hold",
                                                 "0",        "--trace", "t.csv",   "--json"};
 
@@ -45,7 +45,8 @@ TEST_F(TouchSet, TheDragBecomesThatOfTheNewViscosityInTheTickOfItsTime) {
   const std::vector<double> times = column(0);
   const std::vector<double> force = column(9);
   ASSERT_GT(times.back(), 0.8);
-  for (std::size_t i = 400; i < times.size() - 1; ++i) {  // behind where the content fades in
+  for (std::size_t i = 400; i < times.size() - 1;
+       ++i) {  // beyond the distance over which the content fades in
     const double viscosity = times[i] < 0.5 ? 2.0 : 9.0;
     ASSERT_NEAR(force[i], viscosity * 0.05, 1e-9) << times[i];
   }
@@ -136,8 +137,8 @@ TEST_F(TouchSet, APressThatMissesSaysSoAndEndsWith1) {
     EXPECT_EQ(hit.exit_code, 0);
     EXPECT_EQ(parseOnly(hit)["met_something"], true);
   }
-  // Into the syrup by the mouth is not a miss, though no wall is there; and a stroke may well meet
-  // nothing.
+  // Going into the syrup through the mouth counts as meeting something, though there is no wall;
+  // and a stroke is allowed to meet nothing.
   EXPECT_EQ(touch({"--press", "0,0,15"}).exit_code, 0);
   EXPECT_EQ(touch({"--stroke", "0,100,0", "0,100,10"}).exit_code, 0);
 }

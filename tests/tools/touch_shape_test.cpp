@@ -1,5 +1,5 @@
-// palpate touch MESH, IMAGE or GRID: whatever has a surface is touched in one line, as the scene
-// that it writes.
+// palpate touch MESH, IMAGE or GRID: a file with a surface can be touched by one command, as the
+// scene that the command writes for it.
 
 #include <cmath>
 
@@ -12,7 +12,7 @@ constexpr const char* kBall =
     "palpate: 1\nlength: mm\nfields: {b: {sphere: {center: [5, 6, 7], radius: 20}}}\n"
     "layers: [{name: ball, inside: b}]\n";
 
-/// A wedge whose upper face leans: no line down meets it square.
+/// A wedge with a slanted upper face: no vertical line meets it perpendicularly.
 constexpr const char* kWedge =
     "v 0 0 0\nv 30 0 0\nv 0 20 0\nv 30 20 0\nv 0 0 15\nv 0 20 15\n"
     "f 1 3 4 2\nf 1 2 5\nf 3 6 4\nf 1 5 6 3\nf 2 4 6 5\n";
@@ -35,7 +35,7 @@ class TouchShape : public ::testing::Test {
     return runPalpate(arguments, folder_.path());
   }
 
-  /// 2 mm below the found place at 500 N/m: 1 N, but for what the ball's facets and voxels are off.
+  /// 2 mm below the found place at 500 N/m: 1 N, up to the error of the ball's facets and voxels.
   void expectPressed(const CommandResult& result, double tolerance = 0.02) {
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const Json json = parseOnly(result);
@@ -69,8 +69,8 @@ TEST_F(TouchShape, AGrid) {
 
 TEST_F(TouchShape, AnImage) {
   make("ball.nii.gz");
-  // Distances in mm: above -3 is a room with a ball of 17 mm cut out, and the image's border is its
-  // wall.
+  // Distances in mm: values above -3 are all space except a ball of 17 mm, and the image's border
+  // is the outer wall.
   expectPressed(touch({"ball.nii.gz", "--above", "-3"}), 0.05);
   const CommandResult none = touch({"ball.nii.gz"});
   EXPECT_EQ(none.exit_code, 2) << none.err;

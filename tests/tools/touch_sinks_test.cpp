@@ -1,4 +1,4 @@
-// What a touch keeps of its ticks in constant memory: order statistics of times, and rows for
+// Data that a touch keeps of its ticks in constant memory: order statistics of times, and rows for
 // pictures.
 
 #include <gtest/gtest.h>

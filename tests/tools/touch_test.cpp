@@ -1,4 +1,4 @@
-// palpate touch: what is felt, what is reported and what is written.
+// palpate touch: the forces, the report and the written files.
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ constexpr const char* kHeader =
     "t,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,region,contact,event,tick_"
     "ns";
 
-/// Without its last column.
+/// The trace without its last column.
 std::string withoutTimes(const std::string& trace) {
   std::string text;
   for (const std::string& line : linesOf(trace)) text += line.substr(0, line.rfind(',')) + "\n";
@@ -55,8 +55,8 @@ TEST_F(Touch, RegionsComeInOrderWithDepthAndPeakForce) {
   EXPECT_EQ(json["regions"][0]["region"], "outside");
   EXPECT_EQ(json["regions"][1]["region"], "liquid");
   EXPECT_EQ(json["regions"][2]["region"], "outside");
-  // From the mouth at z = 15 mm to -10 mm; a tick is 0.05 mm, and the first one inside may be as
-  // deep.
+  // From the mouth at z = 15 mm to -10 mm; a tick is 0.05 mm, and the first one inside may already
+  // be that deep.
   EXPECT_NEAR(json["regions"][1]["depth_m"], 0.025, 6e-5);
   EXPECT_NEAR(json["regions"][1]["entry_depth_m"], 0.0, 6e-5);
   EXPECT_NEAR(json["regions"][1]["peak_force_N"], 4.0 * 0.05, 1e-9);  // drag 4 N.s/m at 50 mm/s
@@ -80,7 +80,7 @@ TEST_F(Touch, TicksThatDoNotComeToRestAreCountedUnlessTheRendererDoesNotSay) {
   std::vector<std::string> arguments = motion;
   arguments.emplace_back("--json");
   const Json json = parseOnly(touch(arguments));
-  // One wall that bends by 2 mm in 40 holds at once, in every tick.
+  // A single wall that bends by 2 mm in 40 is settled in every tick.
   EXPECT_EQ(json["unsettled_ticks"], 0);
   EXPECT_EQ(json["unsettled_share"], 0.0);
   EXPECT_EQ(json["longest_unsettled_ticks"], 0);
@@ -154,7 +154,7 @@ TEST_F(Touch, EveryMotionRunsWithBothRenderers) {
   }
 }
 
-// The wall gives 3 N at 2 mm; the limits come between it and the hand.
+// The wall gives 3 N at 2 mm; the limits reduce the force on the hand.
 TEST_F(Touch, LimitsOfTheForce) {
   const std::vector<std::string> motion = {"--press", "0,0,-40", "--normal", "0,0,-1",
                                            "--depth", "2",       "--hold",   "0.5",
@@ -189,7 +189,7 @@ TEST_F(Touch, LimitsOfTheForce) {
   (void)forces({"--max-force", "1200mN"}, json);
   EXPECT_EQ(json["limits"]["max_force_N"], 1.2);
 
-  // 10 N/s at 1 kHz: 0.01 N a tick, and down at once.
+  // 10 N/s at 1 kHz: 0.01 N per tick upwards, and down at once.
   const std::vector<double> slewed = forces({"--slew", "10N/s"}, json);
   EXPECT_EQ(json["limits"]["slew_N_per_s"], 10.0);
   bool was_held_back = false;
@@ -200,7 +200,7 @@ TEST_F(Touch, LimitsOfTheForce) {
   }
   EXPECT_TRUE(was_held_back);
 
-  // The motion lasts well over 0.1 s before it rests at 3 N.
+  // The motion takes well over 0.1 s before it rests at 3 N.
   const std::vector<double> ramped = forces({"--ramp", "400ms"}, json);
   EXPECT_EQ(json["limits"]["ramp_s"], 0.4);
   for (std::size_t i = 0; i < plain.size(); ++i) {
@@ -220,7 +220,7 @@ TEST_F(Touch, RealTimeKeepsToTheClockAndReportsOverruns) {
   const Json realtime = parseOnly(result)["realtime"];
   EXPECT_EQ(realtime["clock"], "machine");
   EXPECT_TRUE(realtime["overruns"].is_number());
-  // A turn never begins before it is due; the histogram's quantiles rise.
+  // A turn never begins early; the histogram's quantiles rise.
   EXPECT_GE(realtime["late_ns"]["p50"], 0);
   EXPECT_LE(realtime["late_ns"]["p50"], realtime["late_ns"]["p999"]);
   EXPECT_LE(realtime["late_ns"]["p999"], realtime["late_ns"]["max"]);
@@ -273,7 +273,7 @@ TEST_F(Touch, APlotComesWithIt) {
   const std::string svg = textOf(folder_.path("p.svg"));
   EXPECT_EQ(svg.rfind("<svg ", 0), 0U);
   EXPECT_NE(svg.find("depth of the hand, mm"), std::string::npos);
-  // The mouth on the way in and on the way back; two curves of 45 mm at 50 um a tick.
+  // The mouth is named on the way in and on the way back; two curves of 45 mm at 50 um per tick.
   std::size_t mouths = 0;
   for (std::size_t at = svg.find(">mouth<"); at != std::string::npos;
        at = svg.find(">mouth<", at + 1)) {
@@ -290,8 +290,8 @@ TEST_F(Touch, WorkIsThatOfTheTrace) {
   const CommandResult result = touch({"--insert", "0,0,35", "0,0,-10", "--back", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   Json json = parseOnly(result);
-  // 25 mm of syrup at 4 N.s/m and 50 mm/s, twice; the first quarter millimeter behind the mouth
-  // fades.
+  // Twice 25 mm of syrup at 4 N.s/m and 50 mm/s; in the first quarter millimeter behind the mouth
+  // the drag fades in.
   EXPECT_NEAR(json["work_on_hand_J"], -2 * 0.2 * 0.025, 0.2 * 0.5e-3);
   EXPECT_EQ(json["source_work_J"], 0.0);
 }
@@ -324,7 +324,7 @@ TEST(TouchScenes, TheShippedScenesRun) {
       {"lattice.yaml",
        {"--insert", "3,-7,30", "-11,13,-15", "--back"},
        {"outside", "grid", "outside"}},
-      // The valve refuses the way back: the proxy stays downstream.
+      // The valve is closed on the way back: the proxy stays downstream.
       {"valve_tube.yaml",
        {"--insert", "-60,0,0", "20,0,0", "--back"},
        {"outside", "upstream", "downstream"}},

@@ -1,4 +1,4 @@
-// The command line: help, suggestions, exit codes, and the one object that --json promises.
+// The command line: help, suggestions, exit codes, and the single object that --json promises.
 
 #include "folders/folders.h"
 #include "tools/helpers.h"
@@ -50,7 +50,7 @@ TEST(Usage, SlipsAreUsageErrorsWithASuggestion) {
 
 struct Wrong {
   std::vector<std::string> arguments;
-  std::string says;  // part of the message or hint
+  std::string says;  // a part of the message or hint
 };
 
 void PrintTo(const Wrong& wrong, std::ostream* out) {

@@ -1,4 +1,4 @@
-// Notes on a scene's walls, before anybody feels them.
+// Notes on a scene's walls before they are felt.
 
 #include "tools/helpers.h"
 #include "vdb/nifti_writer.h"
@@ -6,7 +6,7 @@
 namespace palpate::testing {
 namespace {
 
-/// 24 voxels of 0.5 mm a side about the origin, each half along x of one gray value.
+/// 24 voxels of 0.5 mm a side about the origin; each half along x has one gray value.
 std::string halves(double left, double right) {
   vdb::test::NiftiFile file;
   file.dim = {24, 24, 24};
@@ -48,7 +48,8 @@ TEST_F(WallNotes, AContrastWithinAVoxelIsToldWithItsPlace) {
   ASSERT_EQ(explained["contrasts"].size(), 1U);
   const Json& contrast = explained["contrasts"][0];
   EXPECT_EQ(contrast["material"], "flesh");
-  // Ten times as stiff over three voxels of a spline: steepest on the soft side of the middle.
+  // Ten times as stiff over three voxels of a spline: the contrast is steepest on the soft side of
+  // the middle.
   EXPECT_LT(contrast["length_m"].get<double>(), 0.5e-3);
   EXPECT_NEAR(contrast["at_m"][0].get<double>(), -0.3e-3, 0.5e-3);
   const double sideways = contrast["sideways"].get<double>();
@@ -84,7 +85,7 @@ TEST_F(WallNotes, ShadingBeyondTheBandOfAGridIsTold) {
   EXPECT_EQ(gap["layer"], "ball");
   EXPECT_EQ(gap["material"], "flesh");
   EXPECT_NEAR(gap["needed_m"].get<double>(), 4.5e-3, 1e-12);
-  // What is baked has a band of some voxels of 0.25 mm.
+  // A baked field has a band of some voxels of 0.25 mm.
   EXPECT_LT(gap["known_m"].get<double>(), 2e-3);
   EXPECT_GT(gap["known_m"].get<double>(), 0.45e-3);
   const std::string said = touch().err;

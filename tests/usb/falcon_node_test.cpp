@@ -1,5 +1,6 @@
-// A Falcon that is found, opened, unplugged and plugged in again by libusb's own search: umockdev
-// stands for sysfs, udev and the device's node, the emulation for the kernel behind the node.
+// A Falcon that libusb's own search finds, and that is opened, unplugged and plugged in again:
+// umockdev emulates sysfs, udev and the device's node, and our emulation the kernel behind the
+// node.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -20,8 +21,8 @@
 namespace palpate::devices {
 namespace {
 
-/// Device, configuration, interface with bulk IN 0x81 and bulk OUT 0x02: of a Falcon, and of
-/// another maker's device.
+/// Descriptors of device, configuration and interface with bulk IN 0x81 and bulk OUT 0x02: those of
+/// a Falcon, and of another manufacturer's device.
 constexpr const char* kFalcon =
     "12010002000000400304 48CB 0006 010203 01"
     "09022000010100803209040000 02FFFFFF 0007058102400000 07050202400000";
@@ -128,16 +129,17 @@ TEST_F(FalconNode, WithoutOneItSaysSo) {
 TEST_F(FalconNode, AccessThatIsDeniedIsSaidWithItsRemedy) {
   plugInFalcon(5);
   const std::string root = folder();
-  // libusb's watch for new devices puts its socket there.
+  // libusb's hotplug monitor puts its socket there.
   ASSERT_EQ(chmod(root.c_str(), 0777), 0);
-  // umockdev's own socket stays open to everybody: it is not what is denied here.
+  // umockdev's own socket stays accessible to everybody; this test denies access to the device
+  // only.
   ASSERT_EQ(chmod((root + "/ioctl/_default").c_str(), 0777), 0);
   ASSERT_EQ(chmod(fileOf(3).c_str(), 0666), 0);
   ASSERT_EQ(chmod(fileOf(5).c_str(), 0), 0);
   const uid_t self = geteuid();
   constexpr uid_t kNobody = 65534;
   if (self == 0) {
-    ASSERT_EQ(seteuid(kNobody), 0);  // root may open everything
+    ASSERT_EQ(seteuid(kNobody), 0);  // root could open everything
   }
   const auto list = listUsbDevices();
   const Error error = errorOf([] { makeFalcon({})->open(); });
@@ -159,8 +161,8 @@ TEST_F(FalconNode, UnpluggedItIsGoneAndPluggedInAgainElsewhereItIsHomedAndRamped
   std::atomic<bool> stop{false};
   const auto push = [](const DeviceState&) { return Vec3(0.0, 0.0, 1.0); };
   usb_.fault = [this](UsbfsEmulation::Step) { return emulator_.commands >= 600 ? ENODEV : 0; };
-  // Turns count as a millisecond each: the ramp of half a second is over before the cable is
-  // pulled.
+  // Each turn counts as a millisecond: the ramp of half a second is over before the cable is
+  // unplugged.
   const ServoReport first = runServo(*device, push, {}, stop);
   EXPECT_EQ(first.exit, ServoExit::kDisconnected);
   EXPECT_EQ(first.fault, SafetyFault::kDevice);

@@ -1,5 +1,5 @@
-// Fields whose value is not a distance, baked: every voxel has the distance to the surface, at few
-// looks at the field, and what a hand feels of the grid is what it feels of the surface.
+// Baking of fields whose value is not a distance: every voxel gets the distance to the surface,
+// with few queries of the field, and a hand feels the grid as it would feel the surface.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -37,14 +37,14 @@ struct Shape {
   std::string name;
   FieldPtr field;
   std::optional<Box3> box;
-  /// Where a hand touches it: within, of an endless one.
+  /// The box in which a hand touches the shape: inside, for an unbounded shape.
   Box3 touched;
 };
 
 void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
 
-/// Two balls of 30 and 45 mm reach with a saddle between, and a medial axis within the band at 2
-/// mm.
+/// The surfaces of two balls, of 30 and 45 mm, merge in a saddle; with voxels of 2 mm a medial axis
+/// is within the band.
 FieldPtr twoBalls() {
   return metaballs({{Vec3(-14 * kMm, 0.3 * kMm, 0.0), 30 * kMm, 1.0},
                     {Vec3(16 * kMm, 0.0, -0.2 * kMm), 45 * kMm, 1.0}},
@@ -70,7 +70,7 @@ std::vector<Shape> shapes() {
   return all;
 }
 
-/// Down along the gradient, or nothing.
+/// Descends along the gradient to the surface; nothing if that fails.
 std::optional<Vec3> onSurface(const Field& field, Vec3 p) {
   for (int i = 0; i < 60; ++i) {
     const FieldSample s = field.sample(p);
@@ -97,8 +97,9 @@ BakeOptions optionsOf(const Shape& shape, double voxel) {
 TEST_P(BakeImplicit, VoxelsHoldTrueDistances) {
   const Shape& shape = GetParam();
   const LevelSet grid = bake(*shape.field, optionsOf(shape, 1 * kMm));
-  // A tenth of what the cubic sampler leaves of a bend over 8 voxels, 0.037 / 8^3. The heart bends
-  // within a voxel, where points creep: what a grid is stated to be off even where it is smooth.
+  // A tenth of the error of the cubic sampler for a radius of curvature of 8 voxels, 0.037 / 8^3.
+  // The heart curves within a voxel, where points are found by small steps: its tolerance is the
+  // stated error of a grid even where it is smooth.
   const double tolerance = (shape.name == "heart" ? 2e-2 : 1e-5) * kMm;
   std::uint64_t compared = 0;
   std::uint64_t nearer = 0;
@@ -108,13 +109,13 @@ TEST_P(BakeImplicit, VoxelsHoldTrueDistances) {
     const openvdb::Coord at = value.getCoord();
     if ((at.x() + 3 * at.y() + 5 * at.z()) % 7 != 0) continue;
     const Vec3 p = Vec3(at.x(), at.y(), at.z()) * (1 * kMm);
-    // Nearer to a face that cuts it than to its surface, the face tells.
+    // Nearer to a cutting face than to the surface, the value is the distance to the face.
     if (shape.box && !shape.box->grownBy(-6.1 * kMm).contains(p)) continue;
     const auto foot = footPoint(*shape.field, p);
     if (!foot) continue;
     ++compared;
     const double more = std::fabs(*value) * kMm - std::fabs(foot->distance);
-    // footPoint() takes no notice of a part of the surface that is nearer by up to a hundredth.
+    // footPoint() misses a part of the surface that is nearer by up to a hundredth.
     if (more < -tolerance && more > -0.011 * std::fabs(foot->distance)) {
       ++nearer;
     } else {
@@ -127,14 +128,14 @@ TEST_P(BakeImplicit, VoxelsHoldTrueDistances) {
   EXPECT_GT(compared, 3000U);
   EXPECT_LE(nearer, compared / 100);
   EXPECT_LE(worst, tolerance);
-  // Beside a medial axis or a center of curvature, so far a voxel knows a nearer part by its
-  // neighbors' points only.
+  // Beside a medial axis or a center of curvature: there a voxel knows a nearer part of the surface
+  // only through its neighbors' points.
   EXPECT_LE(worst_far, 0.13 * kMm);
 }
 
 TEST_P(BakeImplicit, NoVoxelIsFartherThanTheSurfaceNorLeftOut) {
-  // From points of the surface, every voxel within the band says at most the way to that point, and
-  // is there.
+  // Starting from points of the surface: every voxel within the band exists, and its value is at
+  // most the distance to that point.
   const Shape& shape = GetParam();
   for (const double voxel : {2 * kMm, 0.7 * kMm}) {
     const LevelSet grid = bake(*shape.field, optionsOf(shape, voxel));
@@ -152,7 +153,8 @@ TEST_P(BakeImplicit, NoVoxelIsFartherThanTheSurfaceNorLeftOut) {
       ++points;
       float value = 0.0F;
       ASSERT_TRUE(accessor.probeValue(at, value)) << voxel << " " << way / voxel;
-      // A foot found by creeping over a kink is off along it by hundredths of a voxel.
+      // A closest point found by small steps across a kink is off along the kink by hundredths of a
+      // voxel.
       ASSERT_LE(std::fabs(value) * kMm, way + 0.03 * voxel) << way / voxel;
     }
     EXPECT_GT(points, 500);
@@ -183,30 +185,33 @@ TEST_P(BakeImplicit, DoesNotDependOnThreads) {
 }
 
 TEST_P(BakeImplicit, LipschitzBoundIsThatOfADistance) {
-  // 9 to 19 where S / |grad S| stood for what is far off.
+  // It was 9 to 19 when S / |grad S| replaced the distance far from the surface.
   const Shape& shape = GetParam();
   for (const double voxel : {2 * kMm, 1 * kMm, 0.5 * kMm}) {
     const FieldPtr made = gridField(bake(*shape.field, optionsOf(shape, voxel)));
     std::printf("%s at %.1f mm: slopes up to %.3f\n", shape.name.c_str(), voxel / kMm,
                 made->lipschitz());
-    // 1 but where distances to several sides meet, which the spline rounds off: its cells' control
-    // values are bounded by 2.6 at a crease along their diagonal, and at the tip of a cone.
+    // It is 1 except where distances to several sides meet, which the spline rounds off: there the
+    // control values of its cells have a bound of 2.6, at a crease along the diagonal and at the
+    // tip of a cone.
     EXPECT_LE(made->lipschitz(), 3.0);
   }
 }
 
-/// A hand that presses 1 mm into the surface at random points, against the true surface.
+/// Statistics of a hand that presses 1 mm into the surface at random points, compared with the true
+/// surface.
 struct Touched {
   int points = 0;
-  int smooth = 0;  // of these, where the surface is smooth over four voxels
+  int smooth = 0;  // of these, points where the surface is smooth over four voxels
   int without_force = 0;
-  double worst_force = 0.0;   // [N] |force| off K times the true depth
-  double worst_smooth = 0.0;  // [N] force off K times the way to the true surface
-  double strongest = 0.0;     // [N]
+  double worst_force = 0.0;  // [N] error of |force| against K times the true depth
+  // [N] Error of the force against K times the vector to the true surface
+  double worst_smooth = 0.0;
+  double strongest = 0.0;  // [N]
 };
 
-/// Whether the true surface bends over no less than `least_radius` anywhere within `reach` of the
-/// point.
+/// Whether the radius of curvature of the true surface is at least `least_radius` everywhere within
+/// `reach` of the point.
 bool isSmooth(const Field& field, const Vec3& on, double reach, double least_radius) {
   const auto bends_enough = [&](const Vec3& p) {
     const auto foot = footPoint(field, p);
@@ -223,8 +228,8 @@ bool isSmooth(const Field& field, const Vec3& on, double reach, double least_rad
     const Vec3 along = direction - glm::dot(direction, normal) * normal;
     const auto there = onSurface(field, on + reach * along);
     if (!there || !bends_enough(*there)) return false;
-    // A cusp is too small to be met itself, but turns the normal by more than such a bend on the
-    // way past it.
+    // A cusp is too small to be hit itself, but on a line that passes it the normal turns by more
+    // than on such a bend.
     const double turn =
         std::acos(std::min(1.0, glm::dot(normal, glm::normalize(field.sample(*there).gradient))));
     if (turn * least_radius > reach) return false;
@@ -244,7 +249,7 @@ Touched touched(const Shape& shape, const FieldPtr& made, double voxel) {
     const Vec3 normal = glm::normalize(shape.field->sample(*on).gradient);
     const Vec3 hip = *on - depth * normal;
     const auto foot = footPoint(*shape.field, hip);
-    // Past a medial axis the hand is nearer to another side, and the truth is another.
+    // Beyond a medial axis the hand is nearer to another side, so that the truth is another one.
     if (!foot || glm::length(foot->point - *on) > 1e-3 * depth) continue;
     ++out.points;
     Drive drive(scene);
@@ -265,8 +270,8 @@ Touched touched(const Shape& shape, const FieldPtr& made, double voxel) {
 }
 
 TEST_P(BakeImplicit, TouchedEverywhereItGivesTheForceOfTheTrueSurface) {
-  // Metaballs at 2 mm gave 43.9 N instead of 1 N, a heart no force for 1117 of 1549 ticks of
-  // contact.
+  // Before, metaballs at 2 mm gave 43.9 N instead of 1 N, and a heart no force in 1117 of 1549
+  // ticks of contact.
   const Shape& shape = GetParam();
   for (const double voxel : {2 * kMm, 1 * kMm, 0.5 * kMm}) {
     const LevelSet grid = bake(*shape.field, optionsOf(shape, voxel));
@@ -280,22 +285,23 @@ TEST_P(BakeImplicit, TouchedEverywhereItGivesTheForceOfTheTrueSurface) {
         shape.name.c_str(), voxel / kMm, stated.off / kMm, t.points, t.without_force, t.strongest,
         t.worst_force, t.worst_smooth, t.smooth);
     EXPECT_GT(t.points, 100);
-    // Nothing of a heart 15 voxels wide is smooth over eight of them, nor of a gyroid that turns
-    // round within 20.
+    // No part of a heart 15 voxels wide is smooth over eight of them, nor of a gyroid with a period
+    // of 20.
     const bool is_tight = shape.name == "heart" || shape.name == "gyroid";
     EXPECT_GT(t.smooth, is_tight && voxel > 1.5 * kMm ? -1 : 0);
     EXPECT_EQ(t.without_force, 0);
-    // The force is K times the way to the surface, and that is off by no more than the surface is;
-    // which was measured at one point a voxel, and can be some more between them.
+    // The force is K times the vector to the surface, so that its error is at most that of the
+    // surface. This error was measured at one point per voxel, and can be a little larger between
+    // them.
     EXPECT_LE(t.worst_force, 1.25 * kDefaultK * stated.off);
-    // Where it is smooth over what the spline looks at, 0.02 voxel of the surface and 1 degree of 1
-    // N are stated of any grid.
+    // Where the surface is smooth over the reach of the spline, the stated errors of every grid
+    // hold: 0.02 voxel for the surface, and 1 degree, of 1 N, for the normal.
     EXPECT_LE(t.worst_smooth, kDefaultK * (smooth.off + 1 * kMm * smooth.turn));
   }
 }
 
 TEST_P(BakeImplicit, AStrokeAllOverItNeverLosesTheSurfaceNorThrowsTheHand) {
-  // Also where it bends within a voxel: tips, dimple, saddle.
+  // Also where the surface curves within a voxel: tips, dimple, saddle.
   const Shape& shape = GetParam();
   const double voxel = 2 * kMm;
   const double depth = 1 * kMm;
@@ -331,13 +337,13 @@ TEST_P(BakeImplicit, AStrokeAllOverItNeverLosesTheSurfaceNorThrowsTheHand) {
   std::printf("%s at 2 mm: %d of %d ticks without force, up to %.2f N, by %.2f N in a tick\n",
               shape.name.c_str(), lost, kTicks, strongest, jump);
   EXPECT_EQ(lost, 0);
-  // What is stated of a heart at 2 mm is 0.53 mm at its cusps; along a stroke it is far less.
+  // The stated error of a heart at 2 mm is 0.53 mm, at its cusps; along a stroke it is far less.
   EXPECT_LE(strongest, 1.2 * kDefaultK * depth);
 }
 
 TEST(BakeImplicitEdges, WhatIsCutFromAnImplicitFieldHasItsEdgesAndWalls) {
-  // A ball out of half a maze: every voxel's value is at most what the distance to either surface
-  // allows.
+  // A ball cut out of half a maze: every voxel's value is at most what the distances to the two
+  // surfaces allow.
   const FieldPtr maze = gyroid(Vec3(0.1 * kMm), 40 * kMm);
   const FieldPtr ball = sphere(Vec3(0.0), 30 * kMm);
   const FieldPtr both = intersect({maze, ball});
@@ -349,21 +355,21 @@ TEST(BakeImplicitEdges, WhatIsCutFromAnImplicitFieldHasItsEdgesAndWalls) {
     const openvdb::Coord at = value.getCoord();
     const Vec3 p = Vec3(at.x(), at.y(), at.z()) * voxel;
     wrong_side += (*value < 0.0F) != (both->value(p) < 0.0) ? 1 : 0;
-    // Inside, no farther than the ball's surface if that is there.
+    // Inside, no farther than the ball's surface, where that is part of the surface.
     const Vec3 on_ball = glm::length(p) > 0.0 ? 30 * kMm * glm::normalize(p) : Vec3(0.0);
     if (*value < 0.0F && maze->value(on_ball) < 0.0) {
       farthest = std::max(farthest, -*value * kMm - (30 * kMm - glm::length(p)));
     }
   }
   EXPECT_EQ(wrong_side, 0U);
-  // Beside a medial axis a voxel knows of the other side by the closest points of its neighbors, up
-  // to a voxel off its own: 1 / (2 d) farther, at some three voxels.
+  // Beside a medial axis a voxel knows the other side only through the closest points of its
+  // neighbors, up to a voxel away: its distance is up to 1 / (2 d) too large, at some three voxels.
   EXPECT_LE(farthest, 0.17 * voxel);
   EXPECT_LE(gridField(grid)->lipschitz(), 3.0);
 }
 
 TEST(BakeImplicitEdges, NothingIsLeftBeyondTheFacesThatCutIt) {
-  // The maze goes on out there, and closest points are searched some way beyond the faces.
+  // The maze continues beyond the faces, and closest points are searched some distance beyond them.
   const Shape maze = shapes()[2];
   for (const double voxel : {2 * kMm, 1 * kMm, 0.7 * kMm}) {
     const LevelSet grid = bake(*maze.field, optionsOf(maze, voxel));

@@ -1,4 +1,4 @@
-// What a bake refuses, and how it is stopped.
+// Bakes that are refused, and how a bake is stopped.
 
 #include <gtest/gtest.h>
 
@@ -71,12 +71,12 @@ TEST(BakeLimits, FieldThatIsNoNumberIsRefused) {
 }
 
 TEST(BakeLimits, MemoryIsRefusedBeforeItIsTaken) {
-  // A million voxels across: some 10^13 in the band.
+  // A million voxels across: some 10^13 voxels in the band.
   const Error error = bakeError(sphere(Vec3(0.0), 50e-3), voxels(0.1e-6));
   EXPECT_EQ(error.kind(), ErrorKind::kOperation);
   EXPECT_EQ(error.problem().code, "bake.memory");
   EXPECT_NE(error.problem().message.find("0.0001 mm"), std::string::npos);
-  // No lattice can number such voxels: whatever the memory, the size given is wrong.
+  // No lattice has numbers for such voxels: however large the memory, the given size is wrong.
   EXPECT_EQ(bakeError(sphere(Vec3(0.0), 50e-3), voxels(1e-12)).kind(), ErrorKind::kInput);
 }
 
@@ -93,14 +93,15 @@ TEST(BakeLimits, SuggestedVoxelSizeFits) {
     options.voxel_size = suggested;
     const LevelSet set = bake(*ball, options);
     EXPECT_LE(set.info().memory, limit);
-    // Not wastefully larger either: half of that size would take four times the memory.
+    // The suggestion is not wastefully large either: half that size would take four times the
+    // memory.
     options.voxel_size = suggested / 2.0;
     EXPECT_EQ(bakeError(ball, options).problem().code, "bake.memory");
   }
 }
 
-// The estimate before is near what is taken then, so that a limit refuses neither too much nor too
-// little.
+// The estimate in advance is close to the memory that is taken, so that a limit refuses neither too
+// much nor too little.
 TEST(BakeLimits, TheEstimateIsCloseToWhatIsTaken) {
   const FieldPtr ball = sphere(Vec3(0.0), 20e-3);
   const FieldPtr holes = subtract({ball, torus(15e-3, 6e-3), sphere(Vec3(0.0), 8e-3)});
@@ -108,7 +109,7 @@ TEST(BakeLimits, TheEstimateIsCloseToWhatIsTaken) {
     for (const double half_width : {3.0, 6.0}) {
       BakeOptions options = voxels(0.2e-3, half_width);
       const auto taken = static_cast<double>(bake(*shape, options).info().memory);
-      // Eight of the tree's upper nodes are counted however small the grid is, 0.3 MB each.
+      // The eight upper nodes of the tree, of 0.3 MB each, are counted however small the grid is.
       options.max_memory = static_cast<std::uint64_t>(1.25 * taken + 2.4e6);
       EXPECT_NO_THROW(static_cast<void>(bake(*shape, options)));
       options.max_memory = static_cast<std::uint64_t>(0.95 * taken);

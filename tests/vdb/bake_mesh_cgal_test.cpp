@@ -1,4 +1,4 @@
-// Bands of meshes against CGAL's closest points.
+// Bands of meshes compared with CGAL's closest points.
 
 #include <gtest/gtest.h>
 
@@ -20,12 +20,13 @@ namespace {
 
 using namespace palpate::vdb::test;  // NOLINT(google-build-using-namespace)
 
-/// Of some voxels all over a band. [voxels]
+/// [voxels] Errors of some voxels all over a band.
 struct Off {
   std::uint64_t voxels = 0;
-  double worst = 0.0;   ///< of the distance
-  double nearer = 0.0;  ///< most by which a voxel is nearer to the surface than to any triangle
-  std::uint64_t farther = 0;  ///< by more than 1e-5
+  double worst = 0.0;  ///< largest error of the distance
+  /// Largest amount by which a voxel's value is less than the distance to any triangle
+  double nearer = 0.0;
+  std::uint64_t farther = 0;  ///< number of voxels farther by more than 1e-5
   std::uint64_t wrong_sides = 0;
 };
 
@@ -49,7 +50,7 @@ Off offOf(const LevelSet& set, const CgalDistance& exact, std::uint64_t count, b
   return off;
 }
 
-/// [m^3] Each voxel by its share: exact for planes, second order for curved faces.
+/// [m^3] Volume, each voxel by its share: exact for planes, second order for curved faces.
 double volumeOf(const LevelSet& set) {
   const openvdb::FloatGrid& grid = *set.impl().grid;
   const double voxel = set.info().voxel_size;
@@ -83,18 +84,18 @@ TEST(BakeMeshCgal, BallsAreExact) {
 struct Known {
   const char* name;
   double unit, voxel;  ///< [m]
-  double overlaps;     ///< share of the band that is near to walls within the solid, at most
+  double overlaps;     ///< largest share of the band that is near to walls inside the solid
 };
 
-/// A closed mesh, and its volume where its triangles tell it: those of several parts overlap.
+/// A closed mesh, and its volume if its triangles give it; if several parts overlap, they do not.
 void expectExact(const Mesh& mesh, const Known& known, double told_volume = 0.0) {
   const LevelSet set = bakeMesh(mesh, voxels(known.voxel, 3.0));
   const CgalDistance exact(mesh);
   const Off off = offOf(set, exact, 5000, true);
   EXPECT_LE(off.nearer, 1e-5);
   EXPECT_EQ(off.wrong_sides, 0U);
-  // Parts overlap in some of them: walls within the solid are gone, and what was near to those is
-  // farther from the surface than from them.
+  // In some meshes parts overlap: walls inside the solid were removed, and voxels near them are
+  // farther from the surface than from those walls.
   EXPECT_LE(static_cast<double>(off.farther), known.overlaps * static_cast<double>(off.voxels));
   if (known.overlaps == 0.0) {
     EXPECT_LE(off.worst, 1e-5);

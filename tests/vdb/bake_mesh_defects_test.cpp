@@ -1,5 +1,6 @@
-// Meshes as they come: holes, turned, doubled, missing and crossing triangles, thin plates, numbers
-// that are none. Each is the solid that a person expects, or an error that names the place.
+// Meshes as found in practice: holes; turned, doubled, missing and crossing triangles; thin plates;
+// values that are not numbers. Each becomes the solid that a person expects, or an error that names
+// the place.
 
 #include <gtest/gtest.h>
 
@@ -27,14 +28,14 @@ constexpr double kVoxel = 1e-3;
 constexpr double kRadius = 20e-3;
 const Vec3 kCenter(0.31e-3, -0.17e-3, 0.23e-3);
 
-/// 20480 triangles with edges of 1.2 voxels; nowhere more than 0.02 voxel within the sphere.
+/// 20480 triangles with edges of 1.2 voxels; nowhere more than 0.02 voxel inside the sphere.
 Mesh ball() { return ballMesh(kCenter, kRadius, 5); }
 
 using Distance = std::function<double(const Vec3&)>;
 
 double toBall(const Vec3& p) { return glm::distance(p, kCenter) - kRadius; }
 
-/// Every voxel in the mesh's surroundings: sign and value are off by at most `tolerance` voxels.
+/// For every voxel in and around the mesh, sign and value are right within `tolerance` voxels.
 void expectSolid(const LevelSet& set, const Distance& exact, double tolerance,
                  const std::function<bool(const Vec3&)>& leave_out = {}) {
   const openvdb::FloatGrid& grid = *set.impl().grid;
@@ -87,7 +88,7 @@ TEST(MeshDefects, CleanBall) { expectSolid(baked(ball()), toBall, 0.02); }
 void expectLid(double width) {
   const Mesh mesh = withHole(width * kVoxel);
   ASSERT_FALSE(checkMesh(mesh).isClosed());
-  // A flat lid lies below the sphere by its sagitta; a rim's triangles add one of their own.
+  // A flat lid lies below the sphere by its sagitta; the triangles at its rim add one of their own.
   const double half = 0.5 * width + 1.0;
   expectSolid(baked(mesh), toBall, 0.05 + half * half / (2.0 * kRadius / kVoxel));
 }
@@ -102,7 +103,7 @@ TEST(MeshDefects, HalfABallIsRefusedUnlessTheWindingNumberDecides) {
   const Problem problem = refused(bowl);
   EXPECT_EQ(problem.code, "mesh.open");
   EXPECT_NE(problem.message.find("1 hole"), std::string::npos) << problem.message;
-  // Then it gets its lid.
+  // With this rule the opening gets a lid.
   const auto set = baked(bowl, MeshSign::kWinding);
   const double lid = kCenter.z + kRadius * (1.0 - 0.9 * 0.9 / 2.0);
   EXPECT_GT(gridField(set)->value(Vec3(kCenter.x, kCenter.y, kCenter.z + kRadius)), 0.0);
@@ -114,8 +115,8 @@ TEST(MeshDefects, ThreePercentOfTheTrianglesMissing) {
   std::mt19937 random(3);
   std::erase_if(mesh.triangles, [&](const auto&) { return random() % 100 < 3; });
   ASSERT_GT(checkMesh(mesh).boundary_edges, 1000U);
-  // Single triangles come back as they were; where neighbors are missing, the lid may be folded the
-  // other way along its diagonals.
+  // Single missing triangles are restored; where neighbors are missing too, the lid may be folded
+  // along the other diagonals.
   expectSolid(baked(mesh), toBall, 0.1);
 }
 
@@ -148,7 +149,7 @@ TEST(MeshDefects, TurnedMissingAndDoubledAtOnce) {
   expectSolid(baked(mesh), toBall, 0.1);
 }
 
-/// A ring of 12 mm, its tube of 16 mm: the tube passes through itself about the axis.
+/// A torus with a ring of 12 mm and a tube of 16 mm: the tube passes through itself about the axis.
 Mesh spindle() {
   Mesh mesh;
   constexpr std::uint32_t kAround = 128;
@@ -172,7 +173,8 @@ Mesh spindle() {
   return mesh;
 }
 
-/// The half plane's circle about the ring; and its mirror image beyond the axis.
+/// Distance to the tube's circle in the half plane of p, or (side -1) to its mirror image beyond
+/// the axis.
 double toRing(const Vec3& p, double side) {
   const Vec3 q = p - kCenter;
   return std::hypot(std::hypot(q.x, q.y) - side * 12e-3, q.z) - 16e-3;
@@ -184,12 +186,12 @@ TEST(MeshDefects, SpindleIsNamedUnlessTheUserDecides) {
   EXPECT_EQ(problem.code, "mesh.ambiguous");
   EXPECT_NE(problem.message.find("passes through itself at ("), std::string::npos)
       << problem.message;
-  // By the lens's rim two walls meet: the larger of their distances is not a distance there, and
-  // what is filled is known to a voxel only.
+  // At the lens's rim two walls meet: the larger of their distances is not the distance there. The
+  // filled region is known to a voxel only.
   const auto by_rim = [](const Vec3& p) {
     return std::hypot(p.x - kCenter.x, p.y - kCenter.y) < 4e-3 && std::abs(p.z - kCenter.z) > 6e-3;
   };
-  // Filled: what the outer circle sweeps. The facets' sagitta is 0.02 voxel.
+  // With the flood fill: the solid that the outer circle sweeps. The facets' sagitta is 0.02 voxel.
   expectSolid(
       baked(mesh, MeshSign::kFlood), [](const Vec3& p) { return toRing(p, 1.0); }, 0.05, by_rim);
   // By the winding number the lens about the axis is hollow.
@@ -203,10 +205,11 @@ TEST(MeshDefects, OverlappingShellsAreOneSolid) {
   const Mesh mesh = together(ball(), ballMesh(kCenter + aside, kRadius, 5));
   const auto other = [&](const Vec3& p) { return toBall(p - aside); };
   const auto exact = [&](const Vec3& p) {
-    // Outside, and inside away from the crease, the least is the distance.
+    // Outside, and inside away from the crease, the lesser of the two is the distance.
     return std::min(toBall(p), other(p));
   };
-  // By the crease inside, the nearest point is on it: farther than both spheres' walls are.
+  // Inside near the crease, the nearest point is on the crease: farther than the walls of both
+  // spheres.
   const auto near_crease = [&](const Vec3& p) {
     return exact(p) < 0.0 && std::abs(toBall(p) - other(p)) < 8e-3;
   };
@@ -266,14 +269,14 @@ float atCenter(const LevelSet& set) {
   return set.impl().grid->getConstAccessor().getValue(openvdb::Coord(0, 0, 0));
 }
 
-// The voxels' layer z = 0 is 0.23 voxels below a plate's middle.
+// The layer of voxels z = 0 is 0.23 voxels below a plate's middle.
 TEST(MeshDefects, PlateOfTwoVoxels) { EXPECT_NEAR(atCenter(baked(plate(2.0))), 0.23 - 1.0, 1e-5); }
 TEST(MeshDefects, PlateOfOneVoxel) { EXPECT_NEAR(atCenter(baked(plate(1.0))), 0.23 - 0.5, 1e-5); }
 TEST(MeshDefects, PlateOfAThirdOfAVoxelIsRefused) {
   EXPECT_EQ(refused(plate(0.3)).code, "bake.empty");
 }
 
-/// Every triangle with corners of its own, each off by up to `noise` [m].
+/// Every triangle with its own corners, each off by up to `noise` [m].
 Mesh soupOf(const Mesh& mesh, double noise) {
   Mesh soup;
   std::mt19937 random(19);
@@ -292,13 +295,13 @@ Mesh soupOf(const Mesh& mesh, double noise) {
 TEST(MeshDefects, DuplicateVertices) { expectSolid(baked(soupOf(ball(), 0.0)), toBall, 0.02); }
 
 TEST(MeshDefects, VerticesThatAreAlmostTheSame) {
-  // The mesh is 69 mm across its box: within a millionth of that.
+  // The diagonal of the mesh's box is 69 mm: corners are off by less than a millionth of that.
   expectSolid(baked(soupOf(ball(), 1.5e-8)), toBall, 0.02);
 }
 
 TEST(MeshDefects, ASmallGapOfAGoodMeshStays) {
-  // Two closed cubes with 5e-7 of their size between them are not welded, nor is a closed mesh with
-  // so short edges.
+  // Two closed cubes that are 5e-7 of their size apart are not welded, nor is a closed mesh with
+  // edges that short.
   const Mesh two =
       together(boxMesh(Vec3(0.0), Vec3(10e-3)), boxMesh(Vec3(10e-3 + 1e-8, 0.0, 0.0), Vec3(10e-3)));
   const LevelSet set = baked(two);

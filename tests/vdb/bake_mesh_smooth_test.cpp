@@ -1,4 +1,4 @@
-// Facets made into a smooth surface before they are baked.
+// Facets turned into a smooth surface before they are baked.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ BakeOptions smoothed(double voxel, double degrees) {
 struct Feel {
   double value = 0.0;   ///< [m] RMS
   double normal = 0.0;  ///< [degree] RMS
-  double jitter = 0.0;  ///< greatest |n[i+1] - 2 n[i] + n[i-1]| along the path
+  double jitter = 0.0;  ///< largest |n[i+1] - 2 n[i] + n[i-1]| along the path
 };
 
 /// Slides around a ball in steps of 0.2 mm.
@@ -41,7 +41,7 @@ Feel slide(const Field& field, double radius) {
   Vec3 before(0.0);
   Vec3 last(0.0);
   for (int i = 0; i < kSteps; ++i) {
-    // A curve over all of it.
+    // A curve that covers the whole ball.
     const double turn = 0.2e-3 / radius * i;
     const double tilt = 0.03 * turn;
     const Vec3 out(std::cos(turn), std::sin(turn) * std::cos(tilt),
@@ -61,7 +61,7 @@ Feel slide(const Field& field, double radius) {
 
 TEST(SmoothMesh, BallOfLargeFacetsFeelsLikeABall) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
-  // Facets of 2.4 voxels on R / h = 100 in full, of 4.8 voxels on 50 else.
+  // Facets of 2.4 voxels with R / h = 100 in slow runs, else of 4.8 voxels with 50.
   const double radius = slow ? 50e-3 : 25e-3;
   const Mesh mesh = ballMesh(kCenter, radius, slow ? 5 : 4);
   const Feel facets = slide(*gridField(bakeMesh(mesh, voxels(0.5e-3))), radius);
@@ -81,7 +81,7 @@ TEST(SmoothMesh, BallOfLargeFacetsFeelsLikeABall) {
 }
 
 TEST(SmoothMesh, EdgesStaySharp) {
-  // Twelve triangles with edges of 90 degrees: not one float may change.
+  // Twelve triangles with edges of 90 degrees: not a single float may change.
   const Mesh mesh = boxMesh(kCenter, Vec3(9.1e-3, 7.3e-3, 12.7e-3));
   const LevelSet plain = bakeMesh(mesh, voxels(0.5e-3));
   const LevelSet smooth = bakeMesh(mesh, smoothed(0.5e-3, 60.0));
@@ -91,7 +91,7 @@ TEST(SmoothMesh, EdgesStaySharp) {
   }
 }
 
-/// A cylinder about z of `sides` flat sides.
+/// A cylinder about z with `sides` flat sides.
 Mesh prism(double radius, double height, std::uint32_t sides) {
   Mesh mesh;
   for (std::uint32_t n = 0; n < sides; ++n) {
@@ -127,8 +127,8 @@ TEST(SmoothMesh, RimOfACylinderIsRoundAndSharp) {
     }
     return most;
   };
-  // Flat sides of 15 degrees: R (1 - cos 7.5) = 0.17 voxel. Smooth, the triangles' own 0.0045 voxel
-  // is left, and what the surface's pieces are off.
+  // Flat sides of 15 degrees: R (1 - cos 7.5) = 0.17 voxel. Smoothed, the remaining error is 0.0045
+  // voxel of the triangles themselves, plus the error of the surface's patches.
   EXPECT_GT(worst(voxels(0.5e-3, 3.0)), 0.15);
   BakeOptions options = smoothed(0.5e-3, 40.0);
   options.half_width = 3.0;

@@ -1,5 +1,5 @@
-// Surfaces as they come out of scans: good, but for specks, slivers, small open shells and gaps.
-// What a voxel cannot show is dropped and reported; what it could show is refused.
+// Surfaces as extracted from scans: good, except for specks, slivers, small open shells and gaps.
+// Defects that a voxel cannot show are removed and reported; larger ones are refused.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ constexpr double kMm = 1e-3;
 
 Mesh ball() { return ballMesh(Vec3(0.31, -0.17, 0.23) * kMm, 20 * kMm, 4); }
 
-/// A ball without the lower half of its triangles: open by more than anything could guess.
+/// A ball without the lower half of its triangles: too open for any guess.
 Mesh bowl(const Vec3& center, double radius) {
   Mesh mesh = ballMesh(center, radius, 2);
   std::erase_if(mesh.triangles, [&](const auto& t) {
@@ -59,7 +59,7 @@ Problem refused(const Mesh& mesh, double voxel, MeshSign sign = MeshSign::kVote)
   return {};
 }
 
-/// All voxels of both grids, to rounding.
+/// All voxels of both grids agree to rounding.
 void expectSame(const LevelSet& got, const LevelSet& wanted) {
   ASSERT_EQ(got.info().active_voxels, wanted.info().active_voxels);
   auto other = wanted.impl().grid->getConstAccessor();
@@ -68,9 +68,9 @@ void expectSame(const LevelSet& got, const LevelSet& wanted) {
   }
 }
 
-/// Outside the same to rounding, inside no nearer to the surface: walls inside the solid, where a
-/// surface passes through itself by less than the lines of voxels show, are looked for only in one
-/// that is not closed as it comes.
+/// Outside the same to rounding, inside no nearer to the surface. The difference: walls inside the
+/// solid, where a surface passes through itself by less than the lines of voxels show, are searched
+/// only in a mesh that is not closed as read.
 void expectSameSurface(const LevelSet& got, const LevelSet& wanted) {
   auto other = wanted.impl().grid->getConstAccessor();
   const double unit = wanted.info().voxel_size * 1e3;
@@ -85,7 +85,7 @@ void expectSameSurface(const LevelSet& got, const LevelSet& wanted) {
     if (value > 0.0F) outside = std::max(outside, std::abs(off));
     nearer = std::max(nearer, off);
   }
-  // Twice what bakeMesh() promises: of either.
+  // Twice the error that bakeMesh() promises: one for each grid.
   EXPECT_LT(outside, 2e-5) << "of a voxel";
   EXPECT_LT(nearer, 2e-5) << "of a voxel";
   EXPECT_GT(both, wanted.info().active_voxels * 999 / 1000);
@@ -122,7 +122,7 @@ TEST(MeshSpecks, SliversWithoutWidthAreDropped) {
 }
 
 TEST(MeshSpecks, WhatTheVoxelsCouldShowIsAskedAbout) {
-  // The same bowl, 17 mm across from corner to corner of its box: in voxels of 1 mm and of 5 mm.
+  // The same bowl, 17 mm across the diagonal of its box, in voxels of 1 mm and of 5 mm.
   const Mesh mesh = together(ball(), bowl(Vec3(35, 0, 0) * kMm, 6 * kMm));
   EXPECT_EQ(refused(mesh, 1 * kMm).code, "mesh.open");
   EXPECT_NE(lostOf(bakeMesh(mesh, voxels(5 * kMm, 3.0))), "");
@@ -140,7 +140,8 @@ TEST(MeshSpecks, TheWindingNumberPutsLidsOnAllOfThem) {
   EXPECT_LT(set.impl().grid->getConstAccessor().getValue(openvdb::Coord(25, 0, 1)), 0.0F);
 }
 
-/// Every triangle with corners of its own, each off by up to `gap` times the size along each axis.
+/// Every triangle with its own corners, each off along each axis by up to `gap` times the mesh's
+/// size.
 Mesh soupOf(const Mesh& mesh, double gap) {
   Box3 box;
   for (const Vec3& v : mesh.vertices) box.include(v);
@@ -172,7 +173,7 @@ TEST(MeshSpecks, SoupWithGapsOfAHundredThousandthOfItsSizeIsClosed) {
 }
 
 TEST(MeshSpecks, NoVoxelInsideNamesItsCause) {
-  // A thousand times too small: meters read as millimeters.
+  // A thousand times too small: a file in meters read as millimeters.
   const Problem small = refused(ballMesh(Vec3(0.3, 0.3, 0.3) * kMm, 0.02 * kMm, 3), 1 * kMm);
   EXPECT_EQ(small.code, "bake.empty");
   EXPECT_NE(small.message.find("only 0.04 mm (0.04 voxels) long"), std::string::npos)
@@ -184,7 +185,7 @@ TEST(MeshSpecks, NoVoxelInsideNamesItsCause) {
   EXPECT_EQ(thin.code, "bake.empty");
   EXPECT_NE(thin.message.find("thick, and passes between the voxels"), std::string::npos)
       << thin.message;
-  // Two sheets in one place, wound apart: closed, and nothing within.
+  // Two sheets at one place, with opposite orientation: closed, and nothing inside.
   Mesh flat = boxMesh(Vec3(0.3, 0.3, 0.5) * kMm, Vec3(30, 30, 1) * kMm);
   for (Vec3& v : flat.vertices) v.z = 0.5 * kMm;
   const Problem none = refused(flat, 1 * kMm, MeshSign::kWinding);
@@ -198,7 +199,7 @@ TEST(MeshSpecks, AVoxelTooSmallForOpenVdbIsNamed) {
   EXPECT_NE(problem.message.find("5e-08 mm"), std::string::npos) << problem.message;
 }
 
-/// A surface of a scan, dirtied.
+/// Bakes a surface of a scan with added defects.
 void expectSameWithDirt(const Mesh& clean) {
   const MeshReport report = checkMesh(clean);
   const Vec3 size = report.bounds.size();
@@ -222,7 +223,7 @@ void expectSameWithDirt(const Mesh& clean) {
   const LevelSet got = bakeMesh(dirty, voxels(voxel, 3.0));
   expectSameSurface(got, wanted);
   EXPECT_NE(lostOf(got).find("open fragments"), std::string::npos) << lostOf(got);
-  // And as a soup.
+  // The same as a triangle soup.
   const LevelSet soup = bakeMesh(soupOf(clean, 1e-5), voxels(voxel, 3.0));
   EXPECT_NEAR(static_cast<double>(soup.info().active_voxels),
               static_cast<double>(wanted.info().active_voxels),

@@ -1,5 +1,4 @@
-// Level sets of meshes against closed forms and against brute force over all
-// triangles.
+// Level sets of meshes compared with closed forms and with brute force over all triangles.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -30,7 +29,7 @@ namespace {
 using openvdb::Coord;
 using namespace palpate::vdb::test;  // NOLINT(google-build-using-namespace)
 
-/// Value [m] of every voxel, active or not, in and around the shape.
+/// Visits the value [m] of every voxel, active or not, in and around the shape.
 template <typename Visit>
 void forEachVoxel(const LevelSet& set, const Visit& visit) {
   const openvdb::FloatGrid& grid = *set.impl().grid;
@@ -45,14 +44,14 @@ void forEachVoxel(const LevelSet& set, const Visit& visit) {
   }
 }
 
-/// Every voxel against the distance that `exact` tells.
+/// Compares every voxel with the distance that `exact` gives.
 template <typename Exact>
 void expectDistances(const LevelSet& set, const Exact& exact) {
   const double band = set.info().half_width * set.info().voxel_size;
   std::size_t active_voxels = 0;
   forEachVoxel(set, [&](const Vec3& p, double value, bool active) {
     const double wanted = exact(p);
-    // What bakeMesh() promises, and half a unit in the last place of the stored float.
+    // The error that bakeMesh() promises, and half a unit in the last place of the stored float.
     const double rounding = 1e-5 * set.info().voxel_size + std::abs(wanted) * 0x1p-23;
     active_voxels += active ? 1 : 0;
     if (std::abs(std::abs(wanted) - band) > rounding) {
@@ -83,8 +82,8 @@ TEST(BakeMesh, FacesInTheVoxelsAreHarmless) {
   expectDistances(set, [&](const Vec3& p) { return exact->value(p); });
 }
 
-/// Distance from p to a triangle, by another path than the bake: by its plane
-/// if p projects into it, else by its sides.
+/// Distance from p to a triangle, computed in another way than in the bake: by its plane if p
+/// projects into it, else by its sides.
 double distanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = glm::normalize(glm::cross(b - a, c - a));
   const auto is_left = [&](const Vec3& from, const Vec3& to) {
@@ -101,8 +100,7 @@ double distanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec
   return best;
 }
 
-/// Generalized winding number: the solid angle of the mesh over 4 pi, 1 inside
-/// and 0 outside.
+/// Generalized winding number: the solid angle of the mesh over 4 pi, 1 inside and 0 outside.
 double windingNumber(const Vec3& p, const Mesh& mesh) {
   double sum = 0.0;
   for (const auto& [i, j, k] : mesh.triangles) {
@@ -145,7 +143,8 @@ TEST(BakeMesh, LargeMeshMatchesBruteForceHereAndThere) {
   }
 }
 
-// Closed or not: the distance to the nearest triangle, and shells of any thickness out of one grid.
+// Closed or not: unsigned distances to the nearest triangle, and shells of any thickness made from
+// one such grid.
 TEST(BakeMesh, UnsignedHasNoInside) {
   Mesh bowl = ballMesh(Vec3(0.2e-3, 0.1e-3, -0.3e-3), 4e-3, 2);
   for (const bool is_open : {false, true}) {
@@ -165,8 +164,8 @@ TEST(BakeMesh, UnsignedHasNoInside) {
         const Vec3 p =
             middle + off * glm::normalize(glm::cross(bowl.vertices[b] - bowl.vertices[a],
                                                      bowl.vertices[c] - bowl.vertices[a]));
-        // Edges of the distance, of the bowl's facets and of its rim, are rounded within a tenth of
-        // a voxel.
+        // Ridges of the distance, at edges of the bowl's facets and at its rim, are rounded within
+        // a tenth of a voxel.
         EXPECT_NEAR(shell->value(p), distance(p) - 1e-3, 0.05e-3);
       }
     }
@@ -190,8 +189,8 @@ TEST(BakeMesh, ThreadsDoNotMatter) {
   }
 }
 
-/// The squares that a kernel finds in the leaf about the origin, against brute force over `mesh`
-/// [voxels].
+/// The squared distances that a kernel finds in the leaf about the origin, compared with brute
+/// force over `mesh` [voxels].
 void expectSquares(void (*find_squares)(const LeafQuery&) noexcept, const Mesh& mesh) {
   std::vector<Facet> facets;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -206,8 +205,8 @@ void expectSquares(void (*find_squares)(const LeafQuery&) noexcept, const Mesh& 
     const Vec3 p = Vec3(n / 64, n / 8 % 8, n % 8) - 3.5;
     const double wanted = std::abs(signedDistance(p, mesh));
     const double found = std::sqrt(squares[static_cast<std::size_t>(n)]);
-    // "Off by some 1e-6 of a voxel times the distance"; outside the band no more is known than
-    // that.
+    // "The error of a square is some 1e-6 voxel times the distance"; outside the band only a lower
+    // bound is known.
     if (wanted < half_width) {
       ++near;
       EXPECT_NEAR(found, wanted, 1e-5) << n;
@@ -315,7 +314,7 @@ TEST(BakeMesh, BadMeshesAreRefused) {
             "bake.memory");
   EXPECT_EQ(bakeError(boxMesh(Vec3(0.0), Vec3(1e30)), voxels(0.5e-3)).kind(),
             ErrorKind::kOperation);
-  // A plate far thinner than a voxel, between two layers of them.
+  // A plate far thinner than a voxel, between two layers of voxels.
   const Error thin =
       bakeError(boxMesh(Vec3(0.0, 0.0, 0.5e-3), Vec3(20e-3, 20e-3, 0.1e-3)), voxels(1e-3));
   EXPECT_EQ(thin.problem().code, "bake.empty");

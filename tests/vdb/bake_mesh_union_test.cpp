@@ -1,5 +1,5 @@
-// Solids that overlap, as people put models together: one surface, exact, without anything left
-// inside.
+// Solids that overlap, as in models assembled from parts: they become one exact surface, with
+// nothing left inside.
 
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ Mesh joined(const std::vector<Mesh>& parts) {
   return all;
 }
 
-/// Every `step`th voxel of the band. The bound is what bakeMesh() promises, and as much again for
-/// the places that lie nearer to two walls than they can be told apart.
+/// Checks every `step`th voxel of the band. The tolerance is the error that bakeMesh() promises,
+/// and the same again where two walls are too near to each other to be told apart.
 void expectExact(const LevelSet& set, const UnionOracle& oracle, std::uint64_t step) {
   const double voxel = set.info().voxel_size;
   double worst = 0.0;
@@ -56,7 +56,7 @@ TEST(MeshUnion, OverlappingBallsAreExact) {
 }
 
 TEST(MeshUnion, LargeFacesThroughFineBallsAreExact) {
-  // Faces of 40 voxels, cut along curves of hundreds of pieces.
+  // Faces of 40 voxels, cut along curves of hundreds of segments.
   std::vector<Mesh> parts{boxMesh(Vec3(0.3e-3, 0.1e-3, 0.2e-3), Vec3(20e-3, 16e-3, 12e-3)),
                           ballMesh(Vec3(1e-3, 0.0, 6e-3), 5e-3, 3),
                           ballMesh(Vec3(10e-3, 8e-3, -6e-3), 4e-3, 3)};
@@ -64,7 +64,7 @@ TEST(MeshUnion, LargeFacesThroughFineBallsAreExact) {
 }
 
 TEST(MeshUnion, CubesThatShareFacesAndEdgesAreExact) {
-  // Faces in one plane, faces that are half one another's, and an edge on a face.
+  // Faces in one plane, faces that cover half of each other, and an edge on a face.
   std::vector<Mesh> parts{boxMesh(Vec3(0.0), Vec3(10e-3)),
                           boxMesh(Vec3(10e-3, 2e-3, 0.0), Vec3(10e-3)),
                           boxMesh(Vec3(3e-3, 1e-3, 8e-3), Vec3(4e-3, 5e-3, 6e-3)),
@@ -74,10 +74,10 @@ TEST(MeshUnion, CubesThatShareFacesAndEdgesAreExact) {
 }
 
 TEST(MeshUnion, AFanOfNeedlesThroughOneLineIsExact) {
-  // A hundred wedges turned about one axis: lines that all pass through one point of a face.
+  // A hundred wedges rotated about one axis: cuts that all pass through one point of a face.
   std::vector<Mesh> parts{boxMesh(Vec3(0.0), Vec3(16e-3, 16e-3, 6e-3))};
   for (int n = 0; n < 24; ++n) {
-    // Of different heights, as the oracle takes faces in one plane off each other.
+    // With different heights, because the oracle removes faces that share a plane from each other.
     Mesh blade = boxMesh(Vec3(0.0), Vec3(14e-3, 0.8e-3, 10e-3 + 0.06e-3 * n));
     const double turn = std::numbers::pi * n / 24.0 + 0.01;
     for (Vec3& v : blade.vertices) {
@@ -99,7 +99,7 @@ TEST(MeshUnion, NothingIsLeftInsideOfTwoHundredBalls) {
   }
   const LevelSet set = bakeMesh(joined(balls), voxels(0.5e-3, 3.0));
   auto accessor = set.impl().grid->getConstAccessor();
-  // A voxel deeper than the band in some ball is deeper than the band in the union.
+  // A voxel that is deeper than the band in some ball is deeper than the band in the union.
   std::size_t seen = 0;
   for (const Vec3& center : centers) {
     for (int n = 0; n < 40; ++n) {
@@ -108,7 +108,7 @@ TEST(MeshUnion, NothingIsLeftInsideOfTwoHundredBalls) {
                               static_cast<int>(std::lround(p.y / 0.5e-3)),
                               static_cast<int>(std::lround(p.z / 0.5e-3)));
       const Vec3 voxel = 0.5e-3 * Vec3(at.x(), at.y(), at.z());
-      // Facets cut the sphere by up to 2.5 % of the radius.
+      // Facets are up to 2.5 % of the radius below the sphere.
       if (glm::distance(voxel, center) > 0.97 * 5e-3 - 1.5e-3) continue;
       ++seen;
       EXPECT_LE(accessor.getValue(at), -1.5F) << at;

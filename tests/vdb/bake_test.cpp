@@ -1,4 +1,4 @@
-// What a bake puts into its voxels, looked at one by one.
+// The voxels that a bake produces, examined one by one.
 
 #include "palpate/vdb/bake.h"
 
@@ -26,7 +26,8 @@ struct BakeCase {
   std::string name;
   FieldPtr field;
   double voxel;  // [m]
-  /// What the voxels should hold, by another path than the bake; the field's own value if empty.
+  /// The expected values of voxels, computed independently of the bake; the field's own value if
+  /// empty.
   std::function<double(const Vec3&)> expected = {};
   std::optional<Box3> box = {};
   double half_width = 3.5;
@@ -38,8 +39,8 @@ std::vector<BakeCase> cases() {
   const FieldPtr ball = sphere(Vec3(0.3e-3, -0.2e-3, 0.1e-3), 9e-3);
   const FieldPtr ring = torus(10e-3, 3e-3);
   const FieldPtr brick = box(Vec3(2e-3, 1e-3, -3e-3), Vec3(21e-3, 9e-3, 13e-3));
-  // A wedge of 20 degrees: out of its tip the maximum of the two distances stays far below the
-  // distance to the tip, so that the band would run far beyond the bounds.
+  // A wedge of 20 degrees: beyond its tip the maximum of the two distances stays far below the
+  // distance to the tip, so that the band would extend far beyond the bounds.
   const double s = std::sin(0.17), c = std::cos(0.17);
   const FieldPtr wedge =
       intersect({halfSpace(Vec3(0.0), Vec3(-s, c, 0.0)), halfSpace(Vec3(0.0), Vec3(-s, -c, 0.0)),
@@ -67,7 +68,7 @@ std::vector<BakeCase> cases() {
          return wedge->bounds().contains(p) ? own : std::max(own, wedge->bounds().distanceTo(p));
        }},
       {"implicit", implicitBall(8e-3), 0.4e-3,
-       // True distances end the band by themselves; nothing is lifted out of the bounds.
+       // With true distances the band ends by itself; no value outside the bounds is raised.
        [](const Vec3& p) { return glm::length(p) - 8e-3; }},
       {"cut_by_a_box", ball, 0.5e-3,
        [=](const Vec3& p) {
@@ -91,8 +92,9 @@ std::vector<BakeCase> cases() {
 
 class BakeField : public testing::TestWithParam<BakeCase> {};
 
-// Every voxel of a block that is well larger than the shape, band or not, against the definition.
-// It shows that culling misses no voxel of the band, and that tiles and background have their sign.
+// Compares every voxel of a block much larger than the shape, in the band or not, with the
+// definition. This shows that culling misses no voxel of the band, and that tiles and background
+// have the right sign.
 TEST_P(BakeField, EveryVoxelHoldsWhatItShould) {
   const BakeCase& given = GetParam();
   BakeOptions options = voxels(given.voxel, given.half_width);
@@ -113,13 +115,14 @@ TEST_P(BakeField, EveryVoxelHoldsWhatItShould) {
     active += is_active ? 1 : 0;
     negative += value < 0.0F ? 1 : 0;
     ++checked;
-    // Half a unit in the last place of a float, and what a different order of operations makes of
-    // positions that are a few units in the last place of a double apart.
-    // A closest point is looked for until a millionth of a voxel is left.
+    // Half a unit in the last place of a float, plus the effect of another order of operations on
+    // positions: a few units in the last place of a double. A closest point is refined until the
+    // error is a millionth of a voxel.
     const double left = given.field->metric() == Metric::kExact ? 0.0 : 1e-6 * 1e3 * given.voxel;
     const double rounding =
         0.5 * std::ldexp(std::abs(expected), -23) + 1e3 * 1e-15 * (glm::length(p) + 1e-3) + left;
-    if (std::abs(std::abs(expected) - background) <= 2.0 * rounding) continue;  // either way
+    // May be active or not
+    if (std::abs(std::abs(expected) - background) <= 2.0 * rounding) continue;
     ASSERT_EQ(is_active, std::abs(expected) < background) << *at << " " << expected;
     if (is_active) {
       ASSERT_NEAR(value, expected, 1.01 * rounding) << *at;
@@ -151,7 +154,7 @@ TEST(BakeField, DoesNotDependOnThreads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     results.push_back(bake(*shape, voxels(0.3e-3)));
   }
-  // With a progress function the work is cut into other pieces.
+  // With a progress function the work is divided into other pieces.
   results.push_back(bake(*shape, voxels(0.3e-3), [](std::string_view, double) { return true; }));
   const auto first = activeVoxels(results.front());
   for (const LevelSet& other : results) {
@@ -182,7 +185,7 @@ TEST(BakeField, GridSaysWhatItIs) {
   EXPECT_EQ(info.length_unit, "mm");
   EXPECT_EQ(info.metadata.at("source"), "a test");
   EXPECT_GT(info.memory, info.active_voxels * sizeof(float));
-  // The band ends less than a voxel short of 5 + 3 * 0.25 mm.
+  // The band ends less than a voxel before 5 + 3 * 0.25 mm.
   EXPECT_NEAR(info.bounds.hi.x, 5.5e-3, 1e-12);
   EXPECT_NEAR(info.bounds.lo.z, -5.5e-3, 1e-12);
 
@@ -210,7 +213,7 @@ TEST(BakeField, OtherLengthUnitsHoldTheSameShape) {
   }
 }
 
-// A grid baked again, finer and wider than it was: where it knew only a bound, nothing is active.
+// A grid baked again, finer and wider than before: where it knew only a bound, no voxel is active.
 TEST(BakeField, GridBakedAgainKeepsToWhatItKnew) {
   const LevelSet coarse = bake(*sphere(Vec3(0.0), 8e-3), voxels(0.5e-3, 4.0));
   const FieldPtr known = gridField(coarse);
@@ -218,8 +221,8 @@ TEST(BakeField, GridBakedAgainKeepsToWhatItKnew) {
   EXPECT_GT(fine.info().active_voxels, coarse.info().active_voxels);
   for (const auto& [at, value] : activeVoxels(fine)) {
     const Vec3 p = Vec3(at.x(), at.y(), at.z()) * 0.2e-3;
-    // S / |grad S|: the gradient of a trilinear cell differs from a direction by up to half a voxel
-    // of turn, 0.5 / 2 / 6 of a radian where the band is innermost.
+    // S / |grad S| of a trilinear cell: its gradient differs from the true direction by the turn
+    // over half a voxel, 0.5 / 2 / 6 of a radian at the inner end of the band.
     ASSERT_NEAR(value * 1e-3, glm::length(p) - 8e-3, 0.04 * std::abs(value) * 1e-3 + 0.02e-3);
   }
 }

@@ -1,4 +1,4 @@
-// A processor that bakes keep off, for a servo loop beside them.
+// A processor that baking threads avoid, for a servo loop beside them.
 
 #include "palpate/vdb/bake_threads.h"
 
@@ -29,8 +29,9 @@ std::vector<int> mine() {
   return out;
 }
 
-/// Of many pieces of work, as a bake cuts it up: how many ran where `processor` is permitted.
+/// Number of pieces of work, divided as in a bake.
 constexpr int kPieces = 2000;
+/// How many of them ran on a thread that may use `processor`.
 int piecesOn(int processor) {
   std::atomic<int> count{0};
   tbb::parallel_for(tbb::blocked_range<int>(0, kPieces, 1),
@@ -52,7 +53,8 @@ void expectRefused(int processor) {
 
 TEST(BakeOffProcessor, NoPieceOfABakeRunsThereAndAfterwardsAllIsAsBefore) {
   const std::vector<int> before = mine();
-  if (before.size() == 1) return expectRefused(before.front());  // nothing would be left to bake on
+  // There would be no processor left for the bake
+  if (before.size() == 1) return expectRefused(before.front());
   for (const int processor : before) {
     EXPECT_EQ(piecesOn(processor), kPieces);
     for (int n = 0; n < 10; ++n) {

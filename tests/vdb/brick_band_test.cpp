@@ -1,4 +1,4 @@
-// What bricks say out of their band, how steep they are, and numbers of all sizes.
+// Values of bricks outside their band, bounds of their slopes, and numbers of all sizes.
 
 #include <gtest/gtest.h>
 
@@ -23,15 +23,15 @@ using palpate::test::Random;
 
 constexpr double kVoxel = 0.5e-3;  // [m]
 
-/// |value| and its sign against the true distance, at the rim of the band, beyond it and deep
+/// |value| and its sign compared with the true distance: at the rim of the band, beyond it and deep
 /// inside.
 TEST(Bricks, OutOfTheBandTheyBoundTheDistance) {
   const std::vector<FieldPtr> shapes{sphere(Vec3(0.0), 12e-3), torus(10e-3, 4.5e-3),
                                      box(Vec3(0.0), Vec3(20e-3, 13e-3, 14e-3))};
   for (const FieldPtr& exact : shapes) {
     const FieldPtr grid = gridField(bake(*exact, voxels(kVoxel, 6.0)));
-    // The spline without a prefilter, where the band ends, is off by voxel^2 / 6 of the second
-    // derivatives, 2 / distance in all, and reaches 3.5 voxels.
+    // Where the band ends, the spline has no prefilter: its error is voxel^2 / 6 times the sum of
+    // second derivatives, 2 / distance, and it reaches 3.5 voxels.
     const double slack = kVoxel / 3.0 / 2.5;
     Random random(9);
     int in = 0, out = 0, deep = 0;
@@ -62,7 +62,7 @@ TEST(Bricks, OutOfTheBandTheyBoundTheDistance) {
   }
 }
 
-/// The steepest of many ways between two points, near and far.
+/// The steepest slope between many pairs of points, near and far.
 double steepestWay(const Field& field, const Box3& box, int seed) {
   Random random(static_cast<std::uint64_t>(seed));
   double most = 0.0;
@@ -72,7 +72,7 @@ double steepestWay(const Field& field, const Box3& box, int seed) {
         i % 3 == 0 ? random.in(box) : p + (i % 3 == 1 ? 1.0 : 1e-3) * kVoxel * random.direction();
     const double way = glm::distance(p, q);
     if (way > 0.0) most = std::max(most, std::fabs(field.value(p) - field.value(q)) / way);
-    // A gradient is the steepest way from there.
+    // The gradient is the steepest slope at a point.
     most = std::max(most, glm::length(field.sample(p).gradient));
   }
   return most;
@@ -83,7 +83,7 @@ TEST(Bricks, NoWayIsSteeperThanTheLipschitzBound) {
     const char* name;
     LevelSet grid;
     Box3 box;
-    double loose;  // how many times as large as what was found the bound may be
+    double loose;  // how many times the largest slope found the bound may be
   };
   const auto of = [](const char* name, const FieldPtr& field, double loose) {
     return Case{name, bake(*field, voxels(kVoxel)), field->bounds().grownBy(4e-3), loose};

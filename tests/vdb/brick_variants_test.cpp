@@ -1,4 +1,4 @@
-// The same bricks in every instruction set and from several threads.
+// The same bricks with every instruction set and from several threads.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// How close the cubic spline comes to a surface whose distance is known.
+// The error of the cubic spline for surfaces whose distance is known.
 
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ TEST(BricksAccuracy, TorusOfFifteenVoxels) {
   EXPECT_LE(errors.value, 2e-9);
   EXPECT_LE(errors.normal, 1.8e-4 * kDegree);
 
-  // Far from the origin of the world positions have fewer digits, and no more than that.
+  // Far from the world's origin positions have fewer digits; nothing else changes.
   const Vec3 away(3.0, -2.0, 5.0);
   const FieldPtr moved = palpate::torus(kCenter + away, kAxis, 35e-3, 15e-3);
   const Errors there =
@@ -76,8 +76,8 @@ TEST(BricksAccuracy, TorusOfFifteenVoxels) {
   EXPECT_LE(there.normal, 1.8e-4 * kDegree);
 }
 
-/// The second difference of the normal along a stroke of 0.2 mm a step is the jump of the force.
-/// The spline adds less than 5 % to that of the surface.
+/// The second difference of the normal along a stroke with steps of 0.2 mm is the jump of the
+/// force. The spline adds less than 5 % to that of the surface.
 TEST(BricksAccuracy, AStrokeFeelsTheSurfaceAndNotTheVoxels) {
   const FieldPtr exact = palpate::torus(kCenter, kAxis, 35e-3, 15e-3);
   const FieldPtr grid = cubic(*exact, 1e-3);
@@ -107,7 +107,8 @@ TEST(BricksAccuracy, AStrokeFeelsTheSurfaceAndNotTheVoxels) {
   EXPECT_NEAR(most, true_most, 0.05 * true_most);
 }
 
-/// Errors for a ladder of r / voxel, and the orders between its ends. The errors at the last.
+/// Errors for several ratios r / voxel, and the orders between the first and the last. Returns the
+/// errors of the last one.
 Errors expectOrders(const char* name, const Field& exact, const Box3& region, double radius,
                     const std::vector<double>& ratios, const std::optional<Box3>& box = {}) {
   std::vector<Errors> all;
@@ -139,7 +140,8 @@ FieldPtr distanceTo(const FieldPtr& function, const Box3& bounds) {
       const FieldSample s = function->sample(q);
       const double length = glm::length(s.gradient);
       normal = s.gradient / length;
-      // To the tangent plane, and along it below x. The sideways part is damped, for curvature.
+      // One step to the tangent plane, and one along it towards x. The sideways part is damped
+      // because of curvature.
       const Vec3 across = (x - q) - glm::dot(x - q, normal) * normal;
       const Vec3 move = 0.7 * across - normal * (s.value / length);
       q += move;
@@ -149,24 +151,24 @@ FieldPtr distanceTo(const FieldPtr& function, const Box3& bounds) {
     return FieldSample{distance, normal, true};
   };
   FunctionField::Claims claims{bounds};
-  // Where it finds another point than the closest it jumps, and is too large. A bake drops what is
-  // beyond this bound, so it is generous.
+  // Where it finds a point that is not the closest, the value jumps and is too large. A bake drops
+  // voxels beyond this bound, so that it is generous.
   claims.lipschitz = 16.0;
   return std::make_shared<FunctionField>(sample, claims);
 }
 
 TEST(BricksAccuracy, ConvergesOnAGyroid) {
-  // Period 40 mm: its sharpest radius of curvature is a sixth of that or so.
+  // Period 40 mm: its smallest radius of curvature is about a sixth of that.
   const FieldPtr function = palpate::gyroid(Vec3(0.0), 40e-3);
   const Box3 box{Vec3(-9e-3), Vec3(9e-3)};
   const FieldPtr exact = distanceTo(function, box);
-  // Away from the cut faces, where the box decides.
+  // Away from the cutting faces, where the box would decide.
   const Box3 region{Vec3(-3e-3), Vec3(3e-3)};
   const double radius = 6e-3;
   const Errors coarse = expectOrders("gyroid", *exact, region, radius, {8.0, 16.0}, box);
   if (std::getenv("PALPATE_SLOW_TESTS") == nullptr) return;
-  // With voxels of 0.15 mm it has come down to what the grid's floats can hold: 2e-8 mm and 3e-6
-  // degree.
+  // With voxels of 0.15 mm the error is down to the precision of the grid's floats: 2e-8 mm and
+  // 3e-6 degree.
   const double voxel = radius / 40.0;
   const Errors fine = errorsOf(*cubic(*exact, voxel, box), *exact, region, voxel, 8000);
   std::printf("gyroid  r/h  40.0: value %.3g r, normal %.3g degree\n", fine.value / radius,

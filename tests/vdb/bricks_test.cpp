@@ -1,5 +1,5 @@
-// Bricks against a plain evaluation of the same spline, on noise: a voxel that is taken from a
-// wrong place shows at once. And what holds at borders.
+// Bricks compared with a plain evaluation of the same spline, on noise: a voxel taken from a wrong
+// place shows at once. Also checks continuity at borders.
 
 #include "brick/bricks.h"
 
@@ -22,7 +22,7 @@ using palpate::test::Random;
 
 constexpr double kVoxel = kNoiseVoxel;
 
-/// The coefficient of one voxel as the formula in prefilter.h has it, term by term.
+/// The coefficient of one voxel by the formula in prefilter.h, term by term.
 double coefficient(const Coord& at) {
   const auto f = [&](int axis, int steps, int other = 0, int other_steps = 0) {
     Coord to = at;
@@ -47,7 +47,7 @@ double coefficient(const Coord& at) {
   return c;
 }
 
-/// Cubic B-spline about 0 and its derivatives.
+/// The cubic B-spline about 0, and its derivatives.
 double basis(double x, int derivative) {
   const double a = std::abs(x);
   const double sign = x < 0.0 ? -1.0 : 1.0;
@@ -60,7 +60,7 @@ double basis(double x, int derivative) {
   return a < 1.0 ? -2.0 + 3.0 * a : rest;
 }
 
-/// Value in voxels, derivatives by voxels; `orders` along the axes.
+/// Value in voxels, derivatives per voxel; `orders` are the orders of derivatives along the axes.
 double spline(const Vec3& q, const std::array<int, 3>& orders) {
   const Coord base = Coord::floor(openvdb::Vec3d(q.x, q.y, q.z));
   double sum = 0.0;
@@ -73,8 +73,8 @@ double spline(const Vec3& q, const std::array<int, 3>& orders) {
   return sum;
 }
 
-// Coefficients are floats of up to 6 voxels: 2.4e-7 each, added up with weights of up to 1, 3
-// and 8.
+// Coefficients are floats of up to 6 voxels, rounded by 2.4e-7 each, and added with weights of up
+// to 1, 3 and 8.
 constexpr double kRounding = 1e-6;
 
 void expectIsSpline(const Field& field, const Vec3& q) {
@@ -116,14 +116,14 @@ TEST(Bricks, ATableOfTwoLevelsFindsTheSame) {
   const LevelSet grid = noiseGrid({Coord(0), Coord(-6000, 4000, 2000)}, 14);
   const BrickField field(grid);
   ASSERT_NE(field.bricks().view().coarse, nullptr);
-  // A flat table of these 94 million blocks would have 375 MB.
+  // A flat table of these 94 million blocks would take 375 MB.
   EXPECT_LT(field.bricks().memory(), 4'000'000U);
   Random random(4);
   for (int i = 0; i < 200; ++i) {
     const Vec3 half(9.0);
     expectIsSpline(field, (i % 2 == 0 ? Vec3(0.0) : far) + random.in({-half, half}));
   }
-  // Between the two there is nothing, and it is outside.
+  // Between the two cubes there are no voxels; it is outside.
   const FieldSample between = field.sample(0.5 * far * kVoxel);
   EXPECT_FALSE(between.in_band);
   EXPECT_GT(between.value, 5.0 * kVoxel);
@@ -139,8 +139,9 @@ TEST(Bricks, RefuseATableWithoutEnd) {
   }
 }
 
-/// Value, gradient and Hessian from both sides of faces, edges and corners of cells, leaves, and
-/// nodes of 128 voxels: a billionth of a voxel apart, third derivatives of noise are below 100.
+/// Value, gradient and Hessian on both sides of faces, edges and corners of cells, leaves, and
+/// nodes of 128 voxels. The points are a billionth of a voxel apart, and third derivatives of the
+/// noise are below 100.
 TEST(Bricks, AreTwiceDifferentiableAcrossEveryBorder) {
   const BrickField field(noiseGrid({Coord(0), Coord(128), Coord(-128, 128, 8)}, 14));
   Random random(5);
@@ -160,7 +161,7 @@ TEST(Bricks, AreTwiceDifferentiableAcrossEveryBorder) {
           const FieldJet before = field.jet(kVoxel * (at - step));
           const FieldJet after = field.jet(kVoxel * (at + step));
           ASSERT_TRUE(before.in_band && after.in_band);
-          // The same coefficients on either side, but for the rounding of sums.
+          // The same coefficients on either side, so that only rounding of sums differs.
           ASSERT_NEAR(before.value / kVoxel, after.value / kVoxel, 1e-7);
           for (int a = 0; a < 3; ++a) {
             ASSERT_NEAR(before.gradient[a], after.gradient[a], 1e-6);
@@ -175,8 +176,8 @@ TEST(Bricks, AreTwiceDifferentiableAcrossEveryBorder) {
   EXPECT_EQ(checked, 2100);
 }
 
-/// A cell is known if its 64 coefficients are, and each of those if its voxel and its six neighbors
-/// are.
+/// A cell is known if its 64 coefficients are; a coefficient is known if its voxel and the six
+/// neighbors are.
 TEST(Bricks, AreKnownWhereAllVoxelsAre) {
   const BrickField cubic(noiseGrid({Coord(3)}, 9));  // voxels -6 to 11
   const BrickField linear(noiseGrid({Coord(3)}, 9), Sampler::kTrilinear);

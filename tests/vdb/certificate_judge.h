@@ -1,5 +1,5 @@
 #pragma once
-// A certificate against many samples of the grid: none is outside of its bounds.
+// Checks a certificate against many samples of the grid: none may be outside its bounds.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 
 namespace palpate::vdb::test {
 
-/// `grid` was made by palpate. `box`: where to look [m].
+/// `grid` was made by palpate. `box`: region of the samples [m].
 inline void expectBoundsHold(const std::string& name, const LevelSet& grid, Sampler sampler,
                              const Box3& box) {
   const double voxel = grid.info().voxel_size;
@@ -32,8 +32,8 @@ inline void expectBoundsHold(const std::string& name, const LevelSet& grid, Samp
   for (int i = 0; i < 200000; ++i) {
     const Vec3 p = random.in(box);
     const FieldSample s = made->sample(p);
-    // A step along the gradient leads to the surface, where that is near; from there on points
-    // within w answer.
+    // A step along the gradient leads to the surface if that is near; from there, all points within
+    // w must answer.
     if (s.in_band && std::fabs(s.value) < 0.3 * voxel) {
       const Vec3 on = p - s.value / glm::dot(s.gradient, s.gradient) * s.gradient;
       if (std::fabs(made->sample(on).value) > 1e-3 * voxel) continue;

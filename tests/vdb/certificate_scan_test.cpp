@@ -1,4 +1,4 @@
-// Scans of what is folded, porous and full of specks: their grids are distances, and certified.
+// Scans that are folded, porous and full of specks: their grids hold distances, and are certified.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Folds some four voxels wide, with noise that makes holes and specks of a voxel, in a ball that
-/// is dense in the middle.
+/// Folds about four voxels wide, with noise that makes holes and specks of one voxel, in a ball
+/// that is dense in the middle.
 Image folds(int seed) {
   constexpr int kSide = 48;
   palpate::test::Random random(seed);
@@ -48,9 +48,9 @@ TEST(CertificateOfScans, BoundsHoldWhereThereAreHolesAndSpecksOfAVoxel) {
   }
 }
 
-// What is found late, a speck between lattice points, was taken over by its next neighbors only:
-// voxels on the way contradicted each other by more than two voxels, and points beside the surface
-// did not answer.
+// A regression: a speck between lattice points, found late, was taken over by its direct neighbors
+// only. Voxels on the way then contradicted each other by more than two voxels, and points beside
+// the surface did not answer.
 TEST(CertificateOfScans, VoxelsAreDistancesOfOneSurface) {
   for (int seed = 0; seed < 3; ++seed) {
     const LevelSet grid = surfaceFromThreshold(folds(seed), {.above = 100}, {});
@@ -58,16 +58,16 @@ TEST(CertificateOfScans, VoxelsAreDistancesOfOneSurface) {
     std::printf(
         "voxels differ by up to %.2f voxels more than the way by the surface, %.2f away from it\n",
         steps.near.by, steps.far.by);
-    // Away from the surface nothing but roundings of floats and the nearest of two points; beside
-    // it each of two voxels moves by up to 0.3 twice, so that the spline passes through the
-    // surface, and its side may be the nearest lattice point's.
+    // Away from the surface the differences come only from rounding of floats and from the choice
+    // between two points. Beside it each of two voxels moves by up to 0.3 twice, so that the spline
+    // passes through the surface, and the side may be that of the nearest lattice point.
     EXPECT_LE(steps.far.by, 0.6);
     EXPECT_LE(steps.near.by, 1.2);
   }
 }
 
-// Where the bound by slopes does not suffice, the cells beside those that do not answer are looked
-// at: what they say holds as well.
+// Where the bound by slopes is not enough, the cells beside those that do not answer are examined;
+// the bound from them must hold as well.
 TEST(CertificateOfScans, TheLookAtCellsHoldsAsTheBoundBySlopesDoes) {
   for (int seed = 0; seed < 3; ++seed) {
     const LevelSet grid = surfaceFromThreshold(folds(seed), {.above = 100}, {});

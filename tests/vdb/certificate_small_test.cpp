@@ -26,8 +26,8 @@ CertifyOptions own() {
   return options;
 }
 
-/// [voxels] How far the sampled surface of a ball's grid is off the ball, at worst over many
-/// directions; infinite where a way outward meets no surface.
+/// [voxels] The largest error of the sampled surface of a ball's grid, over many directions;
+/// infinite if a ray outwards meets no surface.
 double worstOf(const LevelSet& grid, const Vec3& center, double radius) {
   const FieldPtr made = gridField(grid, Sampler::kCubic);
   palpate::test::Random random(5);
@@ -63,7 +63,7 @@ TEST(CertificateOfSmall, ABallOfAnySizeIsRefusedNotedOrAsExactAsStated) {
         continue;
       }
       ++held;
-      // `off` is of what is smooth, and `rough` tells that not all is.
+      // `off` holds where the surface is smooth, and `rough` tells that not all of it is.
       if (sure.certificate.rough == 0.0) {
         ++smooth;
         EXPECT_LE(worst, sure.certificate.off / kVoxel);

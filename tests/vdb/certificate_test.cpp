@@ -1,5 +1,5 @@
-// What contact relies on in a grid: made sure of, kept with the grid, and asked of every grid that
-// is touched.
+// The properties of a grid that contact relies on: checked, stored with the grid, and required of
+// every grid that is touched.
 
 #include "palpate/vdb/certificate.h"
 
@@ -54,7 +54,7 @@ std::vector<std::pair<std::string, FieldPtr>> shapes() {
           {"heart", heart(Vec3(0.0), 40 * kMm)}};
 }
 
-// The bounds against many samples: none is outside of them.
+// The bounds compared with many samples: none is outside them.
 TEST(Certificate, BoundsHoldWhereverTheGridIsSampled) {
   for (const auto& [name, field] : shapes()) {
     for (const Sampler sampler : {Sampler::kCubic, Sampler::kTrilinear}) {
@@ -85,14 +85,14 @@ TEST(Certificate, IsKeptWithTheGridUnderAHashOfItsContent) {
   ASSERT_TRUE(stored);
   EXPECT_NEAR(stored->within, certified(grid, own()).certificate.within, 1e-12);
   EXPECT_FALSE(storedCertificate(read, Sampler::kTrilinear)) << "it is of the other sampler";
-  // Whatever its name, and whatever else is said of it.
+  // Independent of its name, and of other metadata.
   EXPECT_EQ(contentHash(read.named("other", {{"layer", "x"}})), contentHash(grid));
-  // One voxel off by the last bit of a float, and it is of another grid.
+  // If one voxel differs in the last bit of a float, the hash differs.
   const openvdb::FloatGrid::Ptr copy = read.impl().grid->deepCopy();
   auto voxel = copy->beginValueOn();
   voxel.setValue(std::nextafter(*voxel, 100.0F));
   EXPECT_FALSE(storedCertificate(makeLevelSet(copy, "mm")));
-  // As does a voxel that is gone.
+  // So it does if a voxel is missing.
   const openvdb::FloatGrid::Ptr less = read.impl().grid->deepCopy();
   less->beginValueOn().setValueOff();
   EXPECT_FALSE(storedCertificate(makeLevelSet(less, "mm")));
@@ -110,10 +110,10 @@ TEST(Certificate, ContentHashesTellPlaceUnitAndSide) {
   EXPECT_NE(contentHash(makeLevelSet(turned, "mm")), contentHash(grid));
 }
 
-/// What becomes of a grid of others: by `check`, and by a scene that touches it.
+/// The fate of a grid from elsewhere: according to `check`, and in a scene that touches it.
 struct Verdict {
   bool is_yes = false;
-  std::string code;  ///< why not
+  std::string code;  ///< reason of the refusal
   std::vector<std::string> notes;
   double off = 0.0;  ///< [m] as stated
   ScenePtr scene;
@@ -153,14 +153,14 @@ Verdict sceneOf(const std::string& path, const RegisterOptions& given = {}) {
   return out;
 }
 
-/// Down along the gradient of an exact field.
+/// Descends along the gradient of an exact field to the surface.
 Vec3 onSurface(const Field& truth, const Vec3& p) {
   const FieldSample s = truth.sample(p);
   return p - s.value * s.gradient;
 }
 
-/// Where the truth is smooth over some voxels: the gradient around does not turn by more than a
-/// ball of eight voxels'.
+/// Whether the truth is smooth over some voxels: the gradient around the point turns no more than
+/// for a ball of eight voxels.
 bool isSmooth(const Field& truth, const Vec3& p, double voxel) {
   const Vec3 here = truth.sample(p).gradient;
   palpate::test::Random random(1);
@@ -171,14 +171,14 @@ bool isSmooth(const Field& truth, const Vec3& p, double voxel) {
   return true;
 }
 
-// 200 grids: what `check` says is what a scene does, and what is touched without a note is felt
-// within its stated error.
+// 200 grids: a scene does as `check` says, and a grid that is touched without a note is felt within
+// its stated error.
 TEST(Certificate, CheckAndTouchAgreeOnTwoHundredGrids) {
   const TempFolder folder;
   int whole_refused = 0;
   int touched = 0, noted = 0, refused = 0, disagree = 0;
   std::map<std::string, int> why;
-  double worst = 0.0;  // of force error, in stated errors
+  double worst = 0.0;  // largest force error, relative to the stated error
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const test::ForeignGrid foreign = test::foreignGrid(seed);
     SCOPED_TRACE(std::to_string(seed) + ": " + foreign.how);
@@ -209,7 +209,7 @@ TEST(Certificate, CheckAndTouchAgreeOnTwoHundredGrids) {
     const double depth = 0.7 * voxel;
     palpate::test::Random random(seed);
     for (int i = 0; i < 24; ++i) {
-      // Half of the points by the damage, if there is any.
+      // Half of the points are near the damage, if there is any.
       const Vec3 from = foreign.is_damaged && i % 2 == 0
                             ? foreign.damage + 2.0 * voxel * random.direction()
                             : random.in(foreign.truth->bounds());
@@ -247,7 +247,8 @@ openvdb::FloatGrid::Ptr sphereOfOthers(double half_width, float radius = 10.0F) 
 }
 
 TEST(Certificate, ATornBandIsNotTouched) {
-  // A hole of some voxels across in the band of a sphere: 14 N were felt there instead of 1 N.
+  // A hole of a few voxels in the band of a sphere: before, the force there was 14 N instead of 1
+  // N.
   const TempFolder folder;
   for (const bool to_inside : {false, true}) {
     const auto grid = sphereOfOthers(3.0);
@@ -289,14 +290,14 @@ TEST(Certificate, WrongValuesAwayFromTheSurfaceAreRebuiltAndTold) {
     if (!s.in_band) continue;
     EXPECT_NEAR(s.value, (-1.0 + 0.05 * i) * kMm, 0.02 * kMm);
   }
-  // Of the spline's coefficients at the band's rim, sharpened ones beside plain ones; one
-  // coefficient too many is three times as steep.
+  // The bound from the spline's coefficients at the band's rim, where prefiltered ones are beside
+  // plain ones; with one wrong coefficient it would be three times as steep.
   EXPECT_LE(field.lipschitz(), 1.75);
 }
 
 TEST(Certificate, OutOfTheBandInContactTheForceHoldsOrFalls) {
   // A hand pushed from the surface to the middle of a ball whose band ends 6 voxels deep, and back:
-  // along the way the force is that of the depth, never more.
+  // on the way the force is that of the depth or less, never more.
   const TempFolder folder;
   const std::string path = folder.path("ball.vdb");
   test::writeAsOthers(path, sphereOfOthers(3.0));
@@ -322,7 +323,7 @@ TEST(Certificate, MemoryForBricksAndForLoadingIsBounded) {
   writeVdb(folder.path("ball.vdb"), one, false);
   const std::uint64_t bytes = grid.info().memory;
   const auto code = [](const auto& make) { return errorOf(make).problem().code; };
-  // Bricks take about three times the grid.
+  // Bricks take about three times the memory of the grid.
   EXPECT_EQ(code([&] {
               static_cast<void>(gridField(grid, Sampler::kCubic, Box3::everything(), 2 * bytes));
             }),
@@ -358,7 +359,7 @@ TEST(Certificate, WhatWasWidenedIsKept) {
   const auto about = std::filesystem::status(options.cache_folder).permissions();
   EXPECT_EQ(about & (std::filesystem::perms::group_all | std::filesystem::perms::others_all),
             std::filesystem::perms::none);
-  // Read back, it says what it said when it was made.
+  // Read back, the certificate says the same as when it was made.
   const Verdict second = sceneOf(path, options);
   ASSERT_TRUE(second.is_yes);
   EXPECT_EQ(second.notes, first.notes);
@@ -369,7 +370,7 @@ TEST(Certificate, WhatWasWidenedIsKept) {
     const Vec3 p = 60 * kMm * random.direction() + 2 * kMm * random.direction();
     ASSERT_EQ(a.sample(p).value, b.sample(p).value);
   }
-  // Marked, so that it shows where the grid came from: a kept grid that was damaged is not taken.
+  // Metadata show where the grid came from: a damaged grid in the cache is not used.
   const std::filesystem::path kept = files().front();
   {
     const LevelSet grid = readVdb(kept.string(), "", "");

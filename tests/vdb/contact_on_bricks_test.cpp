@@ -1,5 +1,4 @@
-// The constraint renderer on grids: what the hand feels of a baked surface is what it feels of the
-// true one.
+// The constraint renderer on grids: a hand feels a baked surface as it would feel the true one.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +37,8 @@ double angle(const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) / kDegree;
 }
 
-/// Goes round a great circle in 2 pi, which itself turns about x a twentieth as fast.
+/// Goes around a great circle in 2 pi, while the circle itself turns about x at a twentieth of that
+/// rate.
 Vec3 winding(double s) {
   const double turn = s / 20.0;
   return {std::cos(s), std::sin(s) * std::cos(turn), std::sin(s) * std::sin(turn)};
@@ -67,8 +67,8 @@ TEST(ContactOnBricks, ASphereStrokeHasTheDirectionOfTheTrueSphere) {
   EXPECT_LE(strength, 1e-6);
 }
 
-/// [N] By how much the force's change from tick to tick differs from the true one, at most, on a
-/// stroke that presses a ball of eight voxels with 3 N.
+/// [N] The largest difference between the force's change from tick to tick and the true change, on
+/// a stroke that presses a ball of eight voxels with 3 N.
 double worstStep(Sampler sampler, double speed) {
   const double voxel = 1 * kMm;
   const double radius = 8 * voxel;
@@ -97,7 +97,7 @@ TEST(ContactOnBricks, NoForceStepIsFeltFromVoxelToVoxel) {
     std::printf("3 N on a ball of 8 voxels at %.2f m/s: cubic %.1e N, trilinear %.2f N\n", speed,
                 cubic, linear);
     EXPECT_LE(cubic, 0.001);
-    EXPECT_GT(linear, 0.04);  // what can be felt, and why the cubic sampler is the default
+    EXPECT_GT(linear, 0.04);  // can be felt: this is why the cubic sampler is the default
   }
 }
 
@@ -121,11 +121,12 @@ TEST(ContactOnBricks, ATorusIsFeltAsTheTrueOneWhereItBendsBothWays) {
     turn = std::max(turn, angle(out.force, hip - middle));
   }
   std::printf("torus stroke at 0.5 mm: direction %.1e degree\n", turn);
-  EXPECT_LE(turn, 1e-3);  // sampler's error at 16 voxels per radius, and its effect on the saddle
+  // The sampler's error at 16 voxels per radius, and its effect on the saddle
+  EXPECT_LE(turn, 1e-3);
 }
 
 TEST(ContactOnBricks, AHandFarBelowTheBandIsHeldOnTheSideItCameFrom) {
-  // 5 cm deep in a ball of 12 cm, whose band is 3 mm: neither field nor gradient is known there.
+  // 5 cm deep in a ball of 12 cm whose band is 3 mm: neither value nor gradient is known there.
   const double radius = 60 * kMm;
   const FieldPtr field = baked(sphere(Vec3(0.0), radius), 0.5 * kMm);
   const ScenePtr scene = sceneOfSolid(field);
@@ -141,7 +142,7 @@ TEST(ContactOnBricks, AHandFarBelowTheBandIsHeldOnTheSideItCameFrom) {
     for (int n = 0; n < 5; ++n) out = drive.to(hip);
     EXPECT_LE(angle(out.force, u), 1e-3);
     EXPECT_NEAR(glm::length(out.proxy), radius, 1e-3 * kMm);
-    // Round it as far as half a turn, deep down, and the proxy goes along.
+    // The hand moves around the center by almost half a turn, deep inside, and the proxy follows.
     const Vec3 side = glm::normalize(glm::cross(u, random.direction()));
     for (double s = 0.0; s < 3.0; s += 0.01) {
       const Vec3 there = (u * std::cos(s) + side * std::sin(s)) * 10.0 * kMm;
@@ -236,12 +237,12 @@ TEST(ContactOnBricks, ALongThinTubeIsFeltAllAlong) {
     const Vec3 hip = at(s, radius - 1 * kMm);
     const TickResult out = drive.to(hip);
     ASSERT_TRUE(out.contact) << s;
-    // Where the round ends begin, the curvature jumps, which no spline follows.
+    // Where the round ends begin, curvature jumps, and no spline follows that.
     if (s < 5 * kMm || s > length - 5 * kMm) continue;
     turn = std::max(turn, angle(out.force, at(s, 1.0) - at(s, 0.0)));
   }
   std::printf("tube of 2 m at 1 mm: direction %.1e degree\n", turn);
-  // Ten voxels a radius: 0.02 (h / r)^3 rad is 1.1e-3 degree RMS.
+  // Ten voxels per radius: 0.02 (h / r)^3 rad is 1.1e-3 degree RMS.
   EXPECT_LE(turn, 5e-3);
 }
 
@@ -268,7 +269,7 @@ struct Solid {
   const char* name;
   FieldPtr truth;
   FieldPtr felt;
-  double off;  // [m] how far the sampler may be off
+  double off;  // [m] allowed error of the sampler
 };
 
 std::vector<Solid> solids() {
@@ -337,7 +338,7 @@ TEST(ContactOnBricks, TwoRunsAgreeBitForBitAndNoTickAllocates) {
 }
 
 TEST(ContactOnBricks, TheEdgeOfAHybridIsAsSharpAsTheTrueOne) {
-  // A sponge in a box: over the box's top face and off its edge, where the sponge is full.
+  // A sponge in a box: over the box's top face and over its edge, where the sponge is solid.
   const FieldPtr wave = gyroid(Vec3(0.0), 60 * kMm);
   const FieldPtr block = box(Vec3(0.0), Vec3(40 * kMm, 40 * kMm, 20 * kMm));
   const FieldPtr tree = intersect({block, wave});

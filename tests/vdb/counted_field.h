@@ -1,5 +1,5 @@
 #pragma once
-// A field that counts the looks at it.
+// A field that counts queries of it.
 
 #include <atomic>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace palpate::vdb::test {
 
-/// Counts how often a field is looked at; a batch counts once for each of its points.
+/// Counts queries of a field; a batch counts once for each of its points.
 class Counted final : public Field {
  public:
   explicit Counted(FieldPtr field) : field_(std::move(field)) {}

@@ -15,8 +15,8 @@ namespace {
 
 const char* const kProject = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3";
 
-/// The file of a tar archive whose name ends in `name`; each starts on a block of 512 bytes, behind
-/// a block that tells its name and its size in octal digits.
+/// The file in a tar archive whose name ends in `name`; each file is preceded by a block of 512
+/// bytes with its name, and its size in octal digits.
 std::string fileOf(const std::string& tar, const std::string& name) {
   constexpr std::size_t kBlock = 512;
   for (std::size_t at = 0; at + kBlock <= tar.size() && tar[at] != '\0';) {
@@ -28,7 +28,7 @@ std::string fileOf(const std::string& tar, const std::string& name) {
   throw std::runtime_error(std::string(kProject) + " holds no " + name);
 }
 
-/// The numbers below `key` of a property list, up to the next key.
+/// The numbers under `key` in a property list, up to the next key.
 std::vector<double> numbersOf(const std::string& plist, const std::string& key) {
   const std::size_t from = plist.find("<key>" + key + "</key>");
   if (from == std::string::npos) throw std::runtime_error("no " + key + " in " + kProject);
@@ -75,7 +75,7 @@ HeadCt readHeadCt() {
               voxels.size());  // the file is little endian, and so are the machines this runs on
   if (ct.values.size() != ct.index(0, 0, ct.size[2])) throw std::runtime_error("not all voxels");
 
-  // A mask has one more voxel along each axis, in front, for the program's own use.
+  // A mask has one more voxel along each axis, at the front, for the program's own use.
   const std::string mask = fileOf(tar, "mask_0.dat");
   const std::size_t nx = static_cast<std::size_t>(ct.size[0]) + 1;
   const std::size_t ny = static_cast<std::size_t>(ct.size[1]) + 1;

@@ -1,5 +1,5 @@
-// Scans that Debian packages carry, as they are read: against nibabel, ITK, and the program that
-// made one of them.
+// Scans from Debian packages, as palpate reads them, compared with nibabel, ITK, and the program
+// that made one of them.
 #include "vdb/debian_scans.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,7 @@ namespace {
 
 using palpate::testing::TempFolder;
 
-// Bytes and floats, from the left to the right and the other way round. nibabel takes the sform
-// where both are set.
+// Bytes and floats, with x running either way. nibabel takes the sform if both forms are set.
 TEST(DebianScans, TemplatesAreAsNibabelHasThem) {
   const std::vector<std::string> files = {test::mricron("AICHAmc.nii.gz"),
                                           test::mricron("inia19-t1-brain.nii.gz")};
@@ -42,8 +41,7 @@ TEST(HeadCt, IsAsItkHasIt) {
   EXPECT_NEAR(glm::length(image.axes[2]), 1.5e-3, 1e-12);
 }
 
-// InVesalius kept which voxels it took for bone: those are the ones above the threshold, and no
-// other.
+// InVesalius stored the voxels that it found to be bone: exactly those above the threshold.
 TEST(HeadCt, BoneIsWhatInVesaliusTookForIt) {
   const test::HeadCt ct = test::readHeadCt();
   const TempFolder folder;

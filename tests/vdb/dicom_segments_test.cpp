@@ -1,5 +1,5 @@
-// DICOM segmentations and structure sets that pydicom writes, against pydicom and numpy; damaged
-// ones are refused.
+// DICOM segmentations and structure sets written by pydicom, compared with pydicom and numpy;
+// damaged ones are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,18 +23,18 @@ using palpate::testing::TempFolder;
 using test::askScript;
 using test::kStructuresOracle;
 
-/// A label volume on an oblique grid with right angles, which DICOM has; its path.
+/// Writes a label volume on an oblique, orthogonal grid, which DICOM can hold; returns its path.
 std::string writeVolume(const TempFolder& folder, unsigned seed) {
   std::mt19937 random(seed);
   test::NiftiFile file;
-  // 77 pixels a plane: planes of bits do not begin with a byte.
+  // 77 pixels in a plane: planes of bits do not begin at a byte.
   file.dim = {11, 7, 9};
   file.datatype = 4;
   const double c = std::cos(0.3);
   const double s = std::sin(0.3);
   file.sform = {{{-1.5 * c, 0.75 * s, 0, 20}, {-1.5 * s, -0.75 * c, 0, -7}, {0, 0, 2.5, 40}}};
   while (file.values.size() < 693) {
-    // Labels with gaps between their numbers; the first and the last plane have none.
+    // Labels with gaps between their numbers; the first and the last plane contain none.
     const int label = static_cast<int>(random() % 4);
     const std::size_t plane = file.values.size() / 77;
     for (auto n = 1 + random() % 9; n > 0 && file.values.size() < 693; --n) {
@@ -56,7 +56,8 @@ TEST_P(SegmentationKinds, AreTheLabelVolumeThatTheyWereMadeOf) {
     const std::string file = folder.path("seg.dcm");
     (void)askScript(kStructuresOracle, "write_seg", {volume.source, kind, file});
     const Image image = readImage(file);
-    // Every voxel of the volume lies in one of the segmentation; planes around it are empty.
+    // Every voxel of the volume has a voxel of the segmentation at its place; planes around it are
+    // empty.
     std::size_t labelled = 0;
     for (int k = 0; k < volume.size[2]; ++k) {
       for (int j = 0; j < volume.size[1]; ++j) {
@@ -107,7 +108,7 @@ std::string textOf(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// `text` with the only `from` of it replaced.
+/// `text` with its only occurrence of `from` replaced.
 std::string with(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -126,7 +127,7 @@ TEST(DicomSegmentation, BesideItsSeriesIsReadByItsOwnName) {
     return note.find("1 DICOM segmentations are passed over") != std::string::npos;
   }));
   EXPECT_EQ(readImage(series + "/a_seg.dcm").labels.names.size(), 3U);
-  // A folder may stand for the only one in it; of two, one has to be named.
+  // A folder may stand for the only file in it; if there are two, one has to be named.
   std::filesystem::create_directory(folder.path("alone"));
   (void)folder.file("alone/seg", textOf(series + "/a_seg.dcm"));
   EXPECT_EQ(readImage(folder.path("alone")).labels.names.size(), 3U);
@@ -140,7 +141,7 @@ TEST(DicomSegmentation, DamageIsRefusedByNameAndNeverTakenForWhole) {
   const std::string file = folder.path("seg.dcm");
   (void)askScript(kStructuresOracle, "write_seg", {writeVolume(folder, 2), "binary", file});
   const std::string whole = textOf(file);
-  // Cut anywhere, in steps that share no factor with the file's even lengths.
+  // Truncated at many places, in steps coprime to the even lengths in the file.
   for (std::size_t length = 0; length < whole.size(); length += 37) {
     const std::string cut = folder.file("cut.dcm", std::string_view(whole).substr(0, length));
     const Error error = errorOf([&] { (void)readImage(cut); });
@@ -156,22 +157,22 @@ TEST(DicomSegmentation, DamageIsRefusedByNameAndNeverTakenForWhole) {
     for (const int value : values) out += static_cast<char>(value);
     return out;
   };
-  // Segment 2 of the table becomes 1: two segments of one number.
+  // Segment number 2 of the table becomes 1: two segments with one number.
   EXPECT_EQ(code_of(with(whole, bytes({0x62, 0, 4, 0, 'U', 'S', 2, 0, 2, 0}),
                          bytes({0x62, 0, 4, 0, 'U', 'S', 2, 0, 1, 0}))),
             "dicom.segments");
-  // The first frame becomes that of segment 7, which is not there.
+  // The first frame now refers to segment 7, which does not exist.
   EXPECT_EQ(code_of(with(whole, bytes({0x62, 0, 11, 0, 'U', 'S', 2, 0, 1, 0}),
                          bytes({0x62, 0, 11, 0, 'U', 'S', 2, 0, 7, 0}))),
             "dicom.segments");
-  // One more row than there are pixels for.
+  // One row more than there are pixels.
   EXPECT_EQ(code_of(with(whole, bytes({0x28, 0, 0x10, 0, 'U', 'S', 2, 0, 7, 0}),
                          bytes({0x28, 0, 0x10, 0, 'U', 'S', 2, 0, 8, 0}))),
             "dicom.truncated");
 }
 
-/// A series of 64 x 64 pixels of 1 mm, slices of 3 mm from 10 mm, and contours on them; the
-/// structure set's path.
+/// Writes a series of 64 x 64 pixels of 1 mm, with slices of 3 mm from 10 mm on, and contours on
+/// them; returns the structure set's path.
 std::string writeContoured(const TempFolder& folder, int seed) {
   (void)test::writeSeries(folder, "c", 8, {0, 0, 3}, [](test::DicomFile& file, int k) {
     file.rows = 64;
@@ -197,7 +198,7 @@ TEST(DicomContours, OnTheirSeriesAreFilledAsNumpyFillsThem) {
         image, askScript(kStructuresOracle, "contours", {file, folder.path("c"), "1000", "4"}),
         1000);
     EXPECT_EQ(readImageInfo(file).size, image.size);
-    // The folder is that of the slices still.
+    // The folder itself still means the series of slices.
     EXPECT_EQ(readImage(folder.path("c")).labels.names.size(), 0U);
   }
 }
@@ -211,7 +212,7 @@ TEST(DicomContours, WithoutTheirSeriesHaveAGridOfTheirOwn) {
     return note.find("not in the folder") != std::string::npos;
   }));
   for (const auto& [label, name] : alone.labels.names) {
-    // First of all, so that it has what it shares with others.
+    // Give it priority, so that it gets the voxels that it shares with others.
     ImageOptions options;
     options.priority = {name};
     const auto cubic_mm = [&, of = static_cast<float>(label)](const std::string& path) {
@@ -219,8 +220,8 @@ TEST(DicomContours, WithoutTheirSeriesHaveAGridOfTheirOwn) {
       return static_cast<double>(std::count(image.values.begin(), image.values.end(), of)) *
              std::abs(glm::determinant(image.axes)) * 1e9;
     };
-    // 250 mm^2 on each of 6 slices, an outline of 60 to 90 mm in pixels of 1 mm: a slice is off by
-    // a few mm^2 at random.
+    // 250 mm^2 on each of 6 slices, with an outline of 60 to 90 mm in pixels of 1 mm: the random
+    // error of a slice is a few mm^2.
     EXPECT_NEAR(cubic_mm(moved) / cubic_mm(file), 1.0, 0.03) << name;
   }
 }
@@ -246,7 +247,7 @@ TEST(DicomContours, BetweenSlicesOrMiscountedAreRefused) {
   }
 }
 
-// Bytes changed at random: a file is read or refused, and nothing else happens.
+// Bytes changed at random: a file is either read or refused.
 TEST(DicomStructures, WithAnyByteChangedAreReadOrRefused) {
   const TempFolder folder;
   const std::string segments = folder.path("seg.dcm");
@@ -270,7 +271,7 @@ TEST(DicomStructures, WithAnyByteChangedAreReadOrRefused) {
       }
     }
   }
-  // Most bytes are pixels and digits, but not all.
+  // Most bytes are pixels and digits, but not all of them.
   EXPECT_GT(refused, 60U);
 }
 

@@ -1,5 +1,5 @@
-// DICOM series: where slices lie, what they hold, and what is refused. Against pydicom and ITK in
-// scans_test.cpp.
+// DICOM series: places of slices, their values, and files that are refused. scans_test.cpp compares
+// with pydicom and ITK.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ using test::writeSeries;
 
 const auto kAsItIs = [](DicomFile&, int) {};
 
-/// How far two points are apart [mm].
+/// Distance between two points [mm].
 double apartMm(const Vec3& a, const Vec3& b) { return glm::length(a - b) * 1e3; }
 
 TEST(Dicom, PlacesSlicesByPositionAndSpacingByRowAndColumn) {
@@ -33,7 +33,7 @@ TEST(Dicom, PlacesSlicesByPositionAndSpacingByRowAndColumn) {
     const Image image = readImage(name);
     EXPECT_EQ(image.size, (std::array{6, 4, 5}));
     for (int k = 0; k < 5; ++k) {
-      // Stored 100 + k, less 1000; column 4 is 4 * 0.5 mm to the left, row 2 is 2 * 2 mm to the
+      // Stored 100 + k, minus 1000; column 4 is 4 * 0.5 mm to the left, row 2 is 2 * 2 mm to the
       // back.
       EXPECT_EQ(image.at(4, 2, k), static_cast<float>(100 + k - 1000));
       EXPECT_LT(apartMm(image.toWorld({4, 2, k}), Vec3(-12, -14, 10 + 3 * k) * 1e-3), 1e-9);
@@ -56,13 +56,13 @@ TEST(Dicom, AnObliqueSeriesFromFeetToHeadAndBackIsOneGeometry) {
   EXPECT_LT(
       apartMm(image.toWorld({2, 1, 3}), Vec3(-(10 + 0.8 - 3.6), -(10 + 0.6 + 4.8), 10 - 2) * 1e-3),
       1e-9);
-  // The other way round files are the same places: slices are sorted along the normal.
+  // With files in reverse order the places are the same: slices are sorted along the normal.
   const Image back = readImage(writeSeries(folder, "t", 4, {1.2, -1.6, 0}, oblique));
   EXPECT_LT(apartMm(back.toWorld({0, 0, 3}), Vec3(-10, -10, 10) * 1e-3), 1e-9);
 }
 
-// A scanner's tilted gantry: slices upright in their own plane, moved along the table. ITK makes a
-// box of it.
+// A tilted gantry: the slices are rectangular in their own plane, and move along the table. ITK
+// would make a box of them.
 TEST(Dicom, ATiltedGantryShearsTheVoxels) {
   const TempFolder folder;
   const double tilt = 12.0 * std::acos(-1.0) / 180.0;
@@ -77,7 +77,7 @@ TEST(Dicom, ATiltedGantryShearsTheVoxels) {
   EXPECT_LT(apartMm(image.axes[1], Vec3(0, -std::cos(tilt), std::sin(tilt)) * 2e-3), 1e-9);
   ASSERT_EQ(image.notes.size(), 1U);
   EXPECT_NE(image.notes[0].find("sheared by 12 degrees"), std::string::npos) << image.notes[0];
-  // The header says tilt, the positions do not: told, and the positions hold.
+  // The header states a tilt, the positions do not: a note says so, and the positions count.
   const auto said = [](DicomFile& file, int) { file.tilt = "-12.0"; };
   const Image straight = readImage(writeSeries(folder, "t", 4, {0, 0, 2}, said));
   ASSERT_EQ(straight.notes.size(), 1U);
@@ -89,7 +89,7 @@ TEST(Dicom, StoredBitsSignAndScaleMakeTheValue) {
   const Image image = readImage(writeSeries(folder, "s", 2, {0, 0, 1}, [](DicomFile& file, int k) {
     file.bits_stored = 12;
     file.is_signed = k == 0;
-    file.slope = k == 0 ? "2" : "0.5";  // from slice to slice another, as PET has it
+    file.slope = k == 0 ? "2" : "0.5";  // differs from slice to slice, as in PET
     file.intercept = "1";
     file.pixels.assign(24, 0x0FFF);
     file.pixels[1] = 0xF001;  // bits above the stored ones do not count
@@ -221,7 +221,7 @@ INSTANTIATE_TEST_SUITE_P(All, DicomErrors,
                                        [](DicomFile& f, int) { f.photometric = "RGB"; }}),
                          [](const auto& c) { return std::string(c.param.name); });
 
-// GDCM fills up what is missing of the pixels, and ends the process where the header is cut.
+// GDCM fills in missing pixels, and ends the process if the header is truncated.
 TEST(DicomCut, AnywhereIsRefused) {
   const TempFolder folder;
   DicomFile file;
@@ -244,7 +244,7 @@ TEST(DicomCut, FoldersWithoutASeriesAreNoImages) {
             "dicom.format");
   const std::string one = writeSeries(folder, "one", 1, {0, 0, 1}, kAsItIs);
   EXPECT_EQ(errorOf([&] { (void)readImage(one); }).problem().code, "dicom.dimensions");
-  // Slope 0 is only met when voxels are read.
+  // A slope of 0 is noticed only when voxels are read.
   const auto flat = [](DicomFile& f, int) { f.slope = "0"; };
   const std::string zero = writeSeries(folder, "zero", 3, {0, 0, 1}, flat);
   EXPECT_EQ(errorOf([&] { (void)readImage(zero); }).problem().code, "dicom.value");

@@ -63,7 +63,7 @@ std::string bytesOf(const DicomFile& file) {
     constexpr std::uint32_t kUndefined = 0xFFFFFFFFU;
     w.head(0x0008, 0x1140, "SQ", kUndefined);
     w.item(0xE000, kUndefined);
-    // A decoy: only the outermost position counts.
+    // A decoy in a nested sequence: only the outermost position counts.
     w.text(0x0020, 0x0032, "DS", "7\\7\\7");
     w.item(0xE00D, 0);
     w.item(0xE0DD, 0);

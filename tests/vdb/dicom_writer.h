@@ -26,17 +26,17 @@ struct DicomFile {
   std::string tilt = {};
   std::string photometric = "MONOCHROME2";
   std::string frames = {};
-  int pixel_bytes_off = 0;  ///< added to the length of the pixel data
+  int pixel_bytes_off = 0;  ///< error added to the length of the pixel data
   std::string storage_class = "1.2.840.10008.5.1.4.1.1.2";  ///< CT
   bool with_pixels = true;
   bool is_implicit = false;
-  bool with_sequence = false;  ///< a nested one, before all that matters
+  bool with_sequence = false;  ///< a nested sequence before all relevant elements
 };
 
 [[nodiscard]] std::string bytesOf(const DicomFile& file);
 
-/// `count` slices, `step` apart (x\y\z), each file made by `change`, in a folder of its own below
-/// `folder`.
+/// Writes `count` slices, `step` apart (x\y\z), each modified by `change`, to a separate folder
+/// below `folder`.
 template <typename Change>
 std::string writeSeries(const palpate::testing::TempFolder& folder, const std::string& name,
                         int count, const std::array<double, 3>& step, const Change& change) {
@@ -50,7 +50,7 @@ std::string writeSeries(const palpate::testing::TempFolder& folder, const std::s
       file.position += (file.position.empty() ? "" : "\\") + std::string(number);
     }
     change(file, k);
-    // Names run against the order in space.
+    // Names are in the opposite order to places.
     (void)folder.file(name + "/" + std::to_string(90 - k) + ".dcm", bytesOf(file));
   }
   return folder.path(name);

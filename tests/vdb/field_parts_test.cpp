@@ -1,4 +1,4 @@
-// A field's parts: in a cell they say what the field says, with fewer of its operands.
+// A field's parts: in a cell they give the field's values, with fewer of its operands.
 
 #include "bake/field_parts.h"
 
@@ -41,7 +41,7 @@ FieldPtr leafOf(Random& random) {
   }
 }
 
-/// A tree of up to `depth` levels of CSG.
+/// A random tree of up to `depth` levels of CSG.
 FieldPtr treeOf(Random& random, int depth) {
   if (depth == 0) return leafOf(random);
   const auto some = [&] {
@@ -88,7 +88,7 @@ TEST(FieldParts, SayWhatTheFieldSaysInTheirBall) {
     const FieldPtr field = treeOf(random, 1 + round % 3);
     const FieldParts parts(*field);
     before += parts.whole().nodes.size();
-    // Narrower and narrower, each out of the one before.
+    // Ever smaller balls, each part narrowed from the one before.
     FieldPart part = parts.whole();
     Vec3 center = random.in(kRegion);
     double radius = 40e-3;
@@ -115,7 +115,7 @@ TEST(FieldParts, SayWhatTheFieldSaysInTheirBall) {
     }
     after += part.nodes.size();
   }
-  // In the smallest balls, of 2.6 mm in 120 mm, little is left of what there was.
+  // In the smallest balls, of 2.6 mm in 120 mm, only few operands remain.
   EXPECT_LT(after, before / 2);
 }
 
@@ -143,7 +143,7 @@ TEST(FieldParts, BeyondTheLimitOnlyTheSignIsKept) {
   EXPECT_LT(limited, exact);
 }
 
-// Of many, the few in a cell; and none of them is lost where nothing is known.
+// Of many operands a cell keeps few; but where nothing is known about an operand, it is kept.
 TEST(FieldParts, KeepWhatNothingIsKnownOf) {
   UserFunction function;
   function.value = [](const Vec3& p) { return p.x - 1e-3; };
@@ -158,7 +158,7 @@ TEST(FieldParts, KeepWhatNothingIsKnownOf) {
   FieldPart part;
   const ValueRange range = parts.narrow(parts.whole(), Vec3(6e-3, 0.0, 1.0), 1e-3, 0.01, part);
   EXPECT_EQ(range.lo, -kInfinity);
-  ASSERT_EQ(part.nodes.size(), 3U);  // the union, the unknown one, and the ball at 1 m
+  ASSERT_EQ(part.nodes.size(), 3U);  // the union, the operand without bounds, and the ball at 1 m
   EXPECT_EQ(part.nodes.front().size, 3U);
   static_cast<void>(parts.narrow(parts.whole(), Vec3(0.0), 1e-4, 0.01, part));
   EXPECT_EQ(part.nodes.size(), 1U);

@@ -86,7 +86,7 @@ std::vector<Coord> activeOf(const Grid& grid) {
   return all;
 }
 
-/// Calls change(voxel) for those within `reach` voxels of the place.
+/// Calls change(voxel) for all voxels within `reach` voxels of the place.
 template <typename Change>
 void around(const Coord& place, int reach, const Change& change) {
   for (int x = -reach; x <= reach; ++x) {

@@ -1,5 +1,5 @@
 #pragma once
-// Grids as others make them, and damaged ones, each from a seed.
+// Grids as other tools make them, and damaged ones, each from a seed.
 
 #include <openvdb/openvdb.h>
 
@@ -13,17 +13,17 @@ namespace palpate::vdb::test {
 struct ForeignGrid {
   std::string how;               ///< shape, maker and damage
   openvdb::FloatGrid::Ptr grid;  ///< in mm
-  FieldPtr truth;                ///< what it is of [m]
-  Vec3 damage{0.0};              ///< [m] where it is damaged, if it is
+  FieldPtr truth;                ///< [m] the field that the grid represents
+  Vec3 damage{0.0};              ///< [m] place of the damage, if there is any
   bool is_damaged = false;
 };
 
-/// The same for the same number: a ball, a ring, a box, two balls in one; by our bake or by
-/// OpenVDB's tools; half of them damaged in one of a dozen ways, from a single value to the whole
-/// band.
+/// The same number gives the same grid: a ball, a ring, a box, or two balls in one, made by our
+/// bake or by OpenVDB's tools; half of them have one of a dozen kinds of damage, from a single
+/// value to the whole band.
 [[nodiscard]] ForeignGrid foreignGrid(std::uint64_t seed);
 
-/// Writes it as OpenVDB does, with `length_unit: mm`.
+/// Writes the grid with OpenVDB, with `length_unit: mm`.
 void writeAsOthers(const std::string& path, const openvdb::FloatGrid::Ptr& grid);
 
 }  // namespace palpate::vdb::test

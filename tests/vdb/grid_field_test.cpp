@@ -1,4 +1,4 @@
-// Grids as fields: the contract of all fields, convergence, and honesty outside the band.
+// Grids as fields: the contract of all fields, convergence, and correct bounds outside the band.
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ struct Errors {
   double normal_rms = 0.0, normal_max = 0.0;  // [degree]
 };
 
-/// A ball's grid against the ball, within one voxel of the surface.
+/// Errors of a ball's grid, within one voxel of the surface.
 Errors ballErrors(double radius, double voxel) {
   const FieldPtr exact = sphere(Vec3(0.1e-3, 0.2e-3, -0.15e-3), radius);
   const FieldPtr grid = baked(exact, voxel);
@@ -107,19 +107,20 @@ TEST(GridField, BallConvergesWithTheVoxelSize) {
     const double value_order = std::log2(before.value_rms / e.value_rms);
     const double normal_order = std::log2(before.normal_rms / e.normal_rms);
     std::printf(" %11.2f %7.2f\n", value_order, normal_order);
-    // Trilinear interpolation of exact distances: voxel^2 for the value, voxel for the gradient.
-    // The coarsest grid has 7 voxels to the radius, where the next terms still show.
+    // Trilinear interpolation of exact distances has errors of voxel^2 for the value, and of voxel
+    // for the gradient. The coarsest grid has 7 voxels per radius, where the next terms still
+    // matter.
     EXPECT_NEAR(value_order, 2.0, 0.1);
     EXPECT_NEAR(normal_order, 1.0, 0.1);
   }
-  // The leading term: |error| <= voxel^2 / 8 * (sum of second derivatives, 2 / r in all).
+  // The leading term: |error| <= voxel^2 / 8 * (sum of second derivatives, 2 / r).
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const double leading = sizes[i] * sizes[i] / 8.0 * 2.0 / (kRadius - 2.0 * sizes[i]);
     EXPECT_LT(found[i].value_max, leading);
   }
 }
 
-/// |value| outside the band, and its sign, against the true distance.
+/// |value| outside the band, and its sign, compared with the true distance.
 TEST(GridField, OutOfTheBandItIsABoundWithTheRightSign) {
   struct Shape {
     FieldPtr exact;
@@ -132,8 +133,8 @@ TEST(GridField, OutOfTheBandItIsABoundWithTheRightSign) {
   for (const Shape& shape : shapes) {
     const FieldPtr grid = baked(shape.exact, shape.voxel, shape.half_width);
     const double rim = shape.half_width * shape.voxel;
-    // In cells at the rim of the band the interpolant must join the band, error and all: it is off
-    // by voxel^2 / 8 of the second derivatives, 2 / distance in all.
+    // In cells at the rim of the band the interpolant must join the band, including its error of
+    // voxel^2 / 8 times the sum of second derivatives, 2 / distance.
     const double slack = shape.voxel * shape.voxel / 4.0 / (rim - std::sqrt(3.0) * shape.voxel);
     Random random(5);
     int out = 0, deep = 0, far = 0;
@@ -141,11 +142,13 @@ TEST(GridField, OutOfTheBandItIsABoundWithTheRightSign) {
       const Vec3 p = random.in(shape.exact->bounds().grownBy((i % 10 + 1) * 2e-3));
       const double distance = shape.exact->value(p);
       const FieldSample sample = grid->sample(p);
-      // Next to the surface the interpolant is off by voxel^2 / 8 of the curvatures, or of an edge.
+      // Next to the surface the interpolant has an error of voxel^2 / 8 times the curvatures, or
+      // that of an edge.
       if (std::abs(distance) > 0.3 * shape.voxel) {
         ASSERT_EQ(std::signbit(sample.value), std::signbit(distance)) << distance;
       }
-      // A voxel is active below the rim; all eight are, if p is nearer by the cell's diagonal.
+      // A voxel is active if it is nearer than the rim; all eight are if p is nearer by the cell's
+      // diagonal.
       if (std::abs(distance) < rim - std::sqrt(3.0) * shape.voxel) {
         ASSERT_TRUE(sample.in_band);
       }
@@ -158,7 +161,8 @@ TEST(GridField, OutOfTheBandItIsABoundWithTheRightSign) {
       ASSERT_LE(std::abs(sample.value), std::abs(distance) + slack);
       ASSERT_GE(std::abs(sample.value), rim - 2.0 * shape.voxel);
       if (std::abs(distance) < rim + shape.voxel) continue;
-      ASSERT_LE(std::abs(sample.value), std::abs(distance));  // away from the rim, without slack
+      // Away from the rim no tolerance is needed
+      ASSERT_LE(std::abs(sample.value), std::abs(distance));
       deep += distance < 0.0 ? 1 : 0;
       far += distance > 0.0 ? 1 : 0;
     }
@@ -179,10 +183,11 @@ TEST(GridField, FarAwayTheBoundGrowsWithTheDistance) {
 }
 
 TEST(GridField, LipschitzBoundIsMeasuredAndTight) {
-  // A distance rises by 1; within a cell of a curved one, the steps along the axes differ.
+  // The slope of a distance is 1; within a cell of a curved surface, the steps along the axes
+  // differ.
   EXPECT_NEAR(baked(sphere(Vec3(0.0), 12e-3), 0.5e-3)->lipschitz(), 1.0, 0.04);
   EXPECT_NEAR(baked(sphere(Vec3(0.0), 12e-3), 0.125e-3)->lipschitz(), 1.0, 0.01);
-  // At a box's edge two of the steps of one cell are 1; no field of distances exceeds sqrt(3).
+  // At a box's edge, two of the steps of one cell are 1; no field of distances exceeds sqrt(3).
   const double edges = baked(box(Vec3(0.0), Vec3(8.3e-3)), 0.5e-3)->lipschitz();
   EXPECT_GT(edges, 1.2);
   EXPECT_LE(edges, std::sqrt(3.0) + 1e-5);

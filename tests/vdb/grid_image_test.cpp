@@ -34,7 +34,7 @@ TEST(GridImage, HoldsTheDistanceWhereItIs) {
       for (int i = 0; i < image.size[0]; ++i) {
         const Vec3 at = image.toWorld(Vec3(i, j, k));
         const double distance = 1e3 * (glm::length(at - Vec3(0.0115, -0.0202, 0.0303)) - 0.008);
-        // In mm, as a float; beyond the band its width.
+        // In mm, as a float; beyond the band it is the band's width.
         ASSERT_NEAR(image.at(i, j, k), std::clamp(distance, -3.0, 3.0), 1e-5) << i << j << k;
       }
     }
@@ -61,7 +61,7 @@ TEST(EncodeNifti, ReadsBackPlainAndCompressed) {
     EXPECT_EQ(back.size, image.size);
     EXPECT_EQ(back.values, image.values);
     EXPECT_TRUE(back.notes.empty());
-    // The place is in floats of mm: 900 mm to 3e-5 mm.
+    // The place is stored as floats in mm: 900 mm to 3e-5 mm.
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_LE(glm::length(back.axes[axis] - image.axes[axis]), 1e-9);
     }

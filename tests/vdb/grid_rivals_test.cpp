@@ -1,4 +1,5 @@
-// The grid's field against OpenVDB's own samplers, and what it may not do while sampling.
+// The grid's field compared with OpenVDB's own samplers, and rules that it must keep while
+// sampling.
 
 #include <gtest/gtest.h>
 #include <openvdb/math/Stencils.h>
@@ -48,7 +49,7 @@ TEST_P(GridRivals, SameAsOpenVdbsTrilinearStencil) {
     ++checked;
     const openvdb::Vec3d at(p.x / 0.5e-3, p.y / 0.5e-3, p.z / 0.5e-3);
     stencil.moveTo(openvdb::Coord::floor(at));
-    // OpenVDB interpolates in floats: a few units in the last place of the band's 2 mm.
+    // OpenVDB interpolates in floats: errors are a few units in the last place of the band's 2 mm.
     const openvdb::Vec3f where(at);
     ASSERT_NEAR(sample.value * 1e3, stencil.interpolation(where), 1e-5);
     const openvdb::Vec3f gradient = stencil.gradient(where);

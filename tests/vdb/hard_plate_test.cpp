@@ -1,4 +1,4 @@
-// Thin plates as grids: what a grid holds is never passed through, at any speed.
+// Thin plates as grids: a plate that a grid holds is never passed through, at any speed.
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,8 @@ TEST(HardPlate, OfFourVoxelsIsNeverTunnelled) {
           for (int i = 0; i < 3; ++i) out = renderer->update({pose.apply(hip)});
           const Vec3 proxy = pose.applyInverse(out.proxy);
           if (hip.z < half - kVoxel) {
-            // Held on the near face, to a tenth of a voxel, and pushed back out.
+            // The proxy must be held on the near face, within a tenth of a voxel, and be pushed
+            // back out.
             through = through || !out.contact || std::fabs(proxy.z - half) > 0.1 * kVoxel;
           }
           tunnelled += through ? 1 : 0;
@@ -74,7 +75,7 @@ TEST(HardPlate, OfFourVoxelsIsNeverTunnelled) {
 }
 
 TEST(HardPlate, WhatAGridCannotHoldIsRefusedOrWhole) {
-  // Whatever its thickness and pose: either the bake is refused, or no straight way leads through
+  // Whatever the thickness and pose: either the bake is refused, or no straight line leads through
   // the plate.
   palpate::test::Random random(3);
   int refused = 0;
@@ -109,13 +110,13 @@ TEST(HardPlate, WhatAGridCannotHoldIsRefusedOrWhole) {
 }
 
 TEST(HardPlate, SharpEdgesAndTipsAreNoPlates) {
-  // They end in less than a voxel, and a grid rounds them off; nothing opens.
+  // Spikes end in less than a voxel, and a grid rounds them off; this opens no hole.
   const FieldPtr spike = cone(Vec3(0.0), Vec3(0, 0, 1), 3e-3, 10e-3);
   EXPECT_NO_THROW((void)bake(*spike, voxels(kVoxel, 6.0)));
   const FieldPtr wedge = intersect({box(Vec3(0.0), Vec3(0.01)), halfSpace(Vec3(0.0), Vec3(1, 0, 2)),
                                     halfSpace(Vec3(0.0), Vec3(1, 0, -2))});
   EXPECT_NO_THROW((void)bake(*place(wedge, kTurned), voxels(kVoxel, 6.0)));
-  // The wall of a hollow ball, half a voxel thick, is a plate.
+  // The wall of a hollow ball, half a voxel thick, counts as a plate.
   const FieldPtr ball = subtract({sphere(Vec3(0.0), 5e-3), sphere(Vec3(0.0), 5e-3 - 0.5 * kVoxel)});
   const Error error = errorOf([&] { (void)bake(*ball, voxels(kVoxel, 6.0)); });
   EXPECT_EQ(error.problem().code, "bake.too_thin");

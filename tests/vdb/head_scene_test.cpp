@@ -51,10 +51,10 @@ TEST(HeadScene, ANeedlePassesSkinBrainAndThalamusInThatOrder) {
     }
   }
   EXPECT_EQ(order, (std::vector<std::string>{"outside", "skin", "brain", "thalamus"}));
-  // The end is well inside: the tip does not graze the far wall.
+  // The end is well inside: the tip does not touch the far wall.
   EXPECT_LT(scene->regions()[scene->regionNamed("thalamus")].field->value(to), -2 * kMm);
 
-  // There and back at 50 mm/s: every port is open where the path crosses it, and nothing else is
+  // There and back at 50 mm/s: every port is open where the path crosses it, and no other wall is
   // passed.
   const std::unique_ptr<HapticRenderer> renderer = makeRenderer(scene);
   std::vector<std::string> felt;

@@ -1,5 +1,5 @@
 #pragma once
-/// Image files made by hand: a header of lines, and voxels that count.
+/// Image files made by hand: a header of lines, and voxels with the values 0, 1, 2, ...
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 namespace palpate::vdb::test {
 
-/// Keys and values of a header; "-" stands for a line that is left out.
+/// Keys and values of a header; "-" means that the line is left out.
 using Lines = std::vector<std::pair<std::string, std::string>>;
 
 inline void set(Lines& lines, const std::string& key, const std::string& value) {
@@ -24,7 +24,7 @@ inline void set(Lines& lines, const std::string& key, const std::string& value) 
   lines.emplace_back(key, value);
 }
 
-/// 0, 1, 2, ... as shorts, the smaller byte first or last.
+/// 0, 1, 2, ... as shorts, low byte first or, if `big`, high byte first.
 inline std::string counting(int count, bool big = false) {
   std::string bytes;
   for (int i = 0; i < count; ++i) {

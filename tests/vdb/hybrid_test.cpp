@@ -20,7 +20,8 @@ namespace {
 
 constexpr double kMm = 1e-3;
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// Rounding of a value made of coordinates of some centimeters: 1e-16 of them, a few operations.
+/// Rounding of a value computed from coordinates of some centimeters: 1e-16 of them, a few
+/// operations.
 constexpr double kRounding = 1e-12;  // [m]
 
 Hybrid made(const FieldPtr& field, double voxel, Parts parts, Sampler sampler = Sampler::kCubic) {
@@ -67,7 +68,7 @@ const Pose kTurned{rotationAbout(Vec3(1.0, 2.0, 3.0), 0.7), Vec3(1.3, -0.4, 0.6)
 
 FieldPtr turnedBox() { return place(box(Vec3(0.0), 2.0 * kHalf), kTurned); }
 
-/// Distance and its gradient of the turned box, in closed form.
+/// Distance to the rotated box and its gradient, in closed form.
 FieldSample boxAt(const Vec3& p) {
   const Vec3 q = kTurned.applyInverse(p);
   const Vec3 w = glm::abs(q) - kHalf;
@@ -84,7 +85,7 @@ FieldSample boxAt(const Vec3& p) {
   return {w[axis], kTurned.rotate(n)};
 }
 
-/// Errors within a voxel of the turned box's surface and four voxels of one of its edges.
+/// Errors within a voxel of the rotated box's surface and within four voxels of one of its edges.
 Errors errorsAtEdges(const Field& field, double voxel) {
   Errors errors;
   Scattered points;
@@ -95,7 +96,7 @@ Errors errorsAtEdges(const Field& field, double voxel) {
     const Vec3 p = kTurned.apply(q);
     const FieldSample truth = boxAt(p);
     if (near < 2 || std::fabs(truth.value) > voxel) continue;
-    // Where two faces are as near, to rounding, the gradient is either's.
+    // Where two faces are equally near, up to rounding, the gradient may be that of either.
     const Vec3 w = glm::abs(q) - kHalf;
     std::array<double, 3> ways{w.x, w.y, w.z};
     std::sort(ways.begin(), ways.end());
@@ -121,7 +122,7 @@ TEST(Hybrid, EdgesOfATurnedBoxStayExactWhereAGridIsTenDegreesOff) {
       exact.value / kMm, exact.normal, exact.largest, grid.value / kMm, grid.normal, grid.largest);
   EXPECT_LE(exact.value, kRounding);
   EXPECT_LE(exact.largest, 1e-6);
-  // Known of every interpolant, whatever the voxel size: some 10 degrees RMS, some 50 at worst.
+  // Known for every interpolant, whatever the voxel size: some 10 degrees RMS, some 50 at worst.
   EXPECT_GT(grid.normal, 8.0);
   EXPECT_LT(grid.normal, 15.0);
   EXPECT_GT(grid.largest, 30.0);
@@ -194,13 +195,13 @@ TEST_P(HybridSamplers, AGyroidInABoxIsAGridOfTheGyroidCutByExactFaces) {
     const FieldSample s = wave->sample(p);
     const double slope = glm::length(s.gradient);
     const FieldSample got = hybrid.field->sample(p);
-    // Both sides of the surface agree everywhere but within what the grid is off.
+    // Everywhere, both agree about the side of the surface, except within the grid's error.
     const double whole = std::max(face.value, s.value / slope);
     if (std::fabs(whole) > 0.1 * voxel) {
       ASSERT_EQ(got.value < 0.0, whole < 0.0) << whole;
     }
     if (face.value > 0.0) {
-      // Out of the box the box decides, wherever the wave is less.
+      // Outside the box the box decides, even where the wave is less.
       if (s.value / slope < face.value - 0.2 * voxel) {
         ++on_box;
         ASSERT_NEAR(got.value, face.value, kRounding);
@@ -220,10 +221,10 @@ TEST_P(HybridSamplers, AGyroidInABoxIsAGridOfTheGyroidCutByExactFaces) {
   }
   EXPECT_GT(on_box, 2000);
   EXPECT_GT(on_wave, 200);
-  // What was measured at set-up is what a query finds.
+  // Queries have the error that was measured at set-up.
   EXPECT_LE(off, 1.3 * hybrid.parts[1].off);
   if (GetParam() == Sampler::kCubic) {
-    EXPECT_LE(turn, 0.05);  // the fifteenth of a voxel per radius, by the third power, in degrees
+    EXPECT_LE(turn, 0.05);  // [degrees] an error of third order, at 15 voxels per radius
   }
   EXPECT_GE(off, 0.3 * hybrid.parts[1].off);
   EXPECT_LE(turn, 1.3 * hybrid.parts[1].turn);
@@ -231,7 +232,7 @@ TEST_P(HybridSamplers, AGyroidInABoxIsAGridOfTheGyroidCutByExactFaces) {
               turn);
 }
 
-/// A ball that takes its time.
+/// A ball that is slow to evaluate.
 FieldPtr slowBall(double radius) {
   test::FunctionField::Claims claims;
   claims.bounds = {Vec3(-radius), Vec3(radius)};
@@ -256,7 +257,7 @@ TEST(Hybrid, WhatIsSlowBecomesAGridAndWhatIsFastDoesNot) {
   EXPECT_TRUE(hybrid.parts[1].grid) << hybrid.parts[1].reason;
   EXPECT_GT(hybrid.parts[1].analytic_ns, 10.0 * hybrid.parts[1].grid_ns);
   EXPECT_GT(hybrid.parts[1].off, 0.0);
-  // Asked for, it is a grid, and so is what is not exact, whatever it costs.
+  // On request every part that is not exact becomes a grid, whatever a query costs.
   const Hybrid forced = made(unite({fast, test::implicitBall(0.01)}), 0.5 * kMm, Parts::kOperands);
   EXPECT_FALSE(forced.parts[0].grid);
   EXPECT_TRUE(forced.parts[1].grid);
@@ -280,7 +281,7 @@ TEST(Hybrid, APartIsBakedOnceInItsOwnFrameAndWhatDidNotChangeStaysTheSameObject)
   ASSERT_EQ(placed.kind, FieldStructure::Kind::kTransform);
   EXPECT_EQ(placed.operands.front(), structure.operands[0]);
   EXPECT_EQ(placed.pose.translation, aside.translation);
-  // The grid lies along the drops' own axes: turned, it answers just as well.
+  // The grid is aligned with the drops' own axes: after a rotation, it answers just as well.
   Scattered points;
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p = points.in(Vec3(12 * kMm));
@@ -305,7 +306,7 @@ TEST(Hybrid, WhatIsToStayStays) {
   HybridOptions options;
   options.bake = test::voxels(kMm);
   options.parts = Parts::kOperands;
-  options.keep = {unite({other, box(Vec3(0.0), Vec3(kMm))})};  // all that is in it
+  options.keep = {unite({other, box(Vec3(0.0), Vec3(kMm))})};  // everything in the union
   const Hybrid hybrid =
       bakeHybrid(unite({drop, place(third, {Mat3(1.0), Vec3(0.0, 0.03, 0.0)})}), options);
   ASSERT_EQ(hybrid.parts.size(), 2U);
@@ -329,7 +330,7 @@ TEST(Hybrid, GridsMadeOnceTakeTheirPlacesAgain) {
     grids[part.name] = part.grid;
   }
   ASSERT_EQ(grids.size(), 2U);
-  // The ball lies in a frame of its own.
+  // The ball has its own frame.
   EXPECT_EQ(grids.rbegin()->second.info().metadata.at("frame"), "part");
   EXPECT_EQ(grids.begin()->second.info().metadata.at("frame"), "world");
   const FieldPtr again = recombined(field, grids, Sampler::kCubic);
@@ -377,7 +378,7 @@ TEST(Hybrid, WhatAGridCannotHoldStaysAnalyticAndSaysWhy) {
     EXPECT_FALSE(hybrid.parts[0].grid);
     EXPECT_EQ(hybrid.field, each.field);
   }
-  // The tolerance is the author's.
+  // The tolerance is the one that the author gave.
   HybridOptions options;
   options.bake = test::voxels(kMm);
   options.parts = Parts::kOperands;
@@ -390,7 +391,7 @@ TEST(Hybrid, WhatAGridCannotHoldStaysAnalyticAndSaysWhy) {
 }
 
 TEST(Hybrid, OnlyWhatTheWholeNeedsIsBaked) {
-  // A big blob of which a small ball shows a little.
+  // A big blob, of which only a small ball is needed.
   const double radius = 0.05;
   const FieldPtr blob = test::implicitBall(radius);
   const FieldPtr window = sphere(Vec3(radius, 0.0, 0.0), 5 * kMm);
@@ -399,7 +400,7 @@ TEST(Hybrid, OnlyWhatTheWholeNeedsIsBaked) {
   const Hybrid part = made(tree, 1 * kMm, Parts::kOperands);
   ASSERT_TRUE(part.parts[1].grid) << part.parts[1].reason;
   EXPECT_LT(part.parts[1].grid.info().active_voxels, whole.parts[0].grid.info().active_voxels / 4);
-  // And what is cut away is not missed.
+  // The part that was cut away is not missed.
   Scattered points;
   for (int i = 0; i < 20000; ++i) {
     const Vec3 p = Vec3(radius, 0.0, 0.0) + points.in(Vec3(60 * kMm));

@@ -1,5 +1,5 @@
 #pragma once
-// An image that was read, held against what another library has of the same file.
+// Compares an image that was read with the same file as read by another library.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,8 @@
 
 namespace palpate::vdb::test {
 
-/// [mm] Numbers of files are decimal or single precision, and both sides compute in double: far
+/// [mm] Numbers in files are decimal or single precision, and both sides compute in double: far
+/// below this.
 /// below it.
 inline constexpr double kSamePlace = 1e-5;
 
@@ -24,7 +25,7 @@ inline std::map<double, std::size_t> histogramOf(const Image& image) {
   return counts;
 }
 
-/// How far a corner of an image is at most from where rows of 3 x 4 numbers have it [mm].
+/// The largest distance [mm] of an image's corner from its place by the 3 x 4 numbers.
 template <typename Twelve>
 double farthestOff(const Image& image, const Twelve& affine) {
   double worst = 0.0;
@@ -43,7 +44,7 @@ double farthestOff(const Image& image, const Twelve& affine) {
   return worst;
 }
 
-/// Places and values of NIfTI files, as nibabel has them.
+/// Compares places and values of NIfTI files with nibabel's.
 inline void expectAsNibabelHas(const std::vector<std::string>& files,
                                const ImageOptions& options = {}) {
   const auto affines = askPython("affine", files);

@@ -1,5 +1,5 @@
-// Labels that meet leave nothing between them: each point is in exactly one of them, or in what is
-// in none.
+// Labels that touch leave no gap between them: each point is in exactly one of them, or in the
+// surroundings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ int labelAt(const Image& image, const std::array<int, 3>& v) {
   return static_cast<int>(image.at(v[0], v[1], v[2]));
 }
 
-/// The labels of the voxels from `first` on, `side` of them along each axis.
+/// The labels of the block of voxels that begins at `first` and has `side` voxels along each axis.
 std::set<int> labelsIn(const Image& image, const std::array<int, 3>& first, int side) {
   std::set<int> result;
   for (int n = 0; n < side * side * side; ++n) {
@@ -39,7 +39,7 @@ std::set<int> labelsIn(const Image& image, const std::array<int, 3>& first, int 
   return result;
 }
 
-/// Every label of an image as a layer of a scene, and, if asked for, as grids by themselves.
+/// Every label of an image as a layer of a scene, and, on request, as separate grids.
 struct Labels {
   Labels(const Image& of, bool by_themselves) : image(of) {
     std::set<int> values;
@@ -66,7 +66,7 @@ struct Labels {
     scene = compile(description);
   }
 
-  /// Of the scene's fields, how many have the point.
+  /// How many of the scene's fields contain the point.
   [[nodiscard]] int holders(const Vec3& p) const {
     const auto regions = scene->regions();
     return static_cast<int>(std::count_if(regions.begin() + 1, regions.end(), [&](const Region& r) {
@@ -119,10 +119,10 @@ void checkSeams(const char* name, const Image& image, bool by_themselves = true)
     const Vec3 here(i, j, k);
     const auto near = labelsIn(image, {i - 1, j - 1, k - 1}, 3);
     const bool is_within = !near.contains(0);
-    // Deeper than a voxel: where labels meet, and some of all others.
+    // Voxels deeper than one voxel inside: where labels meet, and a sample of the others.
     if (is_within && (near.size() > 1 || (i + 3 * j + 5 * k) % 16 == 0))
       check(here + Vec3(share(random), share(random), share(random)) - 0.5, true);
-    // Where three and more meet, what is in none included: all around.
+    // All around places where three or more meet, the surroundings included.
     if (labelsIn(image, v, 2).size() >= 3) {
       const bool is_deep = !labelsIn(image, {i - 1, j - 1, k - 1}, 4).contains(0);
       for (int n = 0; n < 12; ++n) {
@@ -144,7 +144,7 @@ void checkSeams(const char* name, const Image& image, bool by_themselves = true)
       for (int n = 0; n <= 10; ++n) check(here + 0.1 * n * step, true);
       ++walls;
     }
-    // Laps hardly move walls: centers stay in their own region, or nearly so.
+    // Laps hardly move walls: centers stay in their own region, with few exceptions.
     ++centers;
     const Vec3 p = image.toWorld(here);
     const FieldPtr& field = labels.scene->regions()[labels.region.at(own)].field;
@@ -165,13 +165,13 @@ void checkSeams(const char* name, const Image& image, bool by_themselves = true)
   EXPECT_EQ(not_one, 0U);
   EXPECT_EQ(left, 0U);
   EXPECT_EQ(left_alone, 0U);
-  // Laps blur walls by edges of thin parts: 43 of the vertebra's 36348 centers, 2 of the abdomen's
-  // 345988. Grids without laps have 0 and 4.
+  // Laps blur walls near edges of thin parts: 43 of the vertebra's 36348 centers, 2 of the
+  // abdomen's 345988. Grids without laps have 0 and 4.
   EXPECT_LT(static_cast<double>(astray), 1.5e-3 * static_cast<double>(centers));
 }
 
-/// A ball of two halves and a third label that caps one side: three meet in a line within it, and
-/// along lines on its skin. `axes` in mm.
+/// A ball of two halves, and a third label that caps one side: three parts meet in a line inside
+/// it, and along lines on its surface. `axes` in mm.
 Image dividedBall(const Mat3& axes) {
   Image image;
   image.source = "made.nii";
@@ -217,7 +217,7 @@ TEST(LabelSeam, EveryPointOfTheVertebraIsInOnePart) {
 }
 
 TEST(LabelSeam, EveryPointOfTheAbdomenIsInOnePart) {
-  // Its grids by themselves: LabelSurface.AbdomenKeepsVolumesAndWalls.
+  // Its grids without a scene are tested by LabelSurface.AbdomenKeepsVolumesAndWalls.
   checkScan("abdomen", palpate::testing::scanPath("abdomen/example_seg.nii.gz"), false);
 }
 
@@ -225,14 +225,14 @@ TEST(LabelSeam, NothingIsUnitedWhereNoLabelsMeet) {
   Image image = dividedBall(Mat3(1.0));
   LabelSurfaces alone(image, {{1, 2, 3}});
   EXPECT_FALSE(alone.united(0.0, {}).has_value());
-  // One within the other do not limit each other: they are not neighbors.
+  // A layer inside another one does not limit it, nor the reverse: they are not neighbors.
   LabelSurfaces nested(image, {{1, 2, 3}, {2}});
   EXPECT_FALSE(nested.united(0.0, {}).has_value());
 }
 
-// A layer with a label in common is not a neighbor, and what it holds is not the rest either: a
-// part of two layers has the same surface as by itself where it meets only that one, and its wall
-// to a third is shared.
+// A layer with a common label is not a neighbor, and its voxels do not belong to the rest either.
+// So a layer that is part of another one keeps its own surface where it meets only that layer, and
+// shares its wall with a third one.
 TEST(LabelSeam, ALayerWithinAnotherKeepsItsOwnSurface) {
   const Image image = dividedBall(Mat3(1.0));
   LabelSurfaces nested(image, {{1, 2}, {2}, {3}});
@@ -250,7 +250,7 @@ TEST(LabelSeam, ALayerWithinAnotherKeepsItsOwnSurface) {
     const double value = part->value(p) / kMm;
     if (std::abs(value) > 1.0) continue;
     if (cap->value(p) > 4 * kMm) {
-      // By itself its wall to label 1 is its own smoothing of it, not the mean of both.
+      // Its wall to label 1 is its own smoothed surface, not the mean of both.
       EXPECT_NEAR(value, same->value(p) / kMm, 0.2);
       EXPECT_LT(whole->value(p), 0.0);
       ++within;
@@ -264,9 +264,9 @@ TEST(LabelSeam, ALayerWithinAnotherKeepsItsOwnSurface) {
   EXPECT_GT(at_wall, 100);
 }
 
-// Along the line within the ball where three parts meet, from each part in turn: where all walls
-// between the parts are open, a probe that is dragged along and across it is never in what is in no
-// part.
+// Along the line inside the ball where three parts meet, starting from each part in turn. With all
+// walls between the parts open, a probe that is dragged along and across the line never leaves the
+// parts.
 TEST(LabelSeam, AProbeAlongTheLineOfThreePartsNeverFallsOut) {
   const Image image = dividedBall(Mat3(1.0));
   LabelSurfaces surfaces(image, {{1}, {2}, {3}});
@@ -292,7 +292,7 @@ TEST(LabelSeam, AProbeAlongTheLineOfThreePartsNeverFallsOut) {
 
   const Vec3 tilted = glm::normalize(Vec3(0.12, 0.05, 1));
   const Vec3 axis = glm::normalize(Vec3(0.3, 0.5, 0.8));
-  // Both planes: tilted . p = 6, axis . p = 0.
+  // The line in both planes: tilted . p = 6, axis . p = 0.
   const Vec3 along = glm::normalize(glm::cross(tilted, axis));
   const double c = glm::dot(tilted, axis);
   const Vec3 foot = (6.0 * tilted - 6.0 * c * axis) / (1.0 - c * c);
@@ -303,7 +303,7 @@ TEST(LabelSeam, AProbeAlongTheLineOfThreePartsNeverFallsOut) {
     Vec3 last = start;
     constexpr int kTicks = 12000;
     for (int n = 0; n <= kTicks; ++n) {
-      // Half the ball's width along the line, in circles of a voxel and less around it, slowly.
+      // Half the ball's width along the line, in circles of at most a voxel around it, slowly.
       const double t = static_cast<double>(n) / kTicks;
       const double radius = 0.02 + 1.2 * t;
       const double turn = 400.0 * t;

@@ -1,4 +1,4 @@
-// Smooth surfaces out of voxel labels: against closed forms, and shared by neighbors.
+// Smooth surfaces from voxel labels, compared with closed forms, and shared by neighbors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ Vec3 direction(std::mt19937& random) {
   return unitOr(Vec3(normal(random), normal(random), normal(random)), Vec3(1, 0, 0));
 }
 
-/// A shape by its distance and points of its surface with their normals, lengths in mm.
+/// A shape, given by its distance and by points of its surface with their normals; lengths in mm.
 struct Shape {
   const char* name;
   std::function<double(const Vec3&)> distance;
@@ -59,7 +59,7 @@ Shape torusShape(const Vec3& center, const Vec3& axis, double ring, double tube)
           Box3{Vec3(-ring - tube - 9), Vec3(ring + tube + 9)}};
 }
 
-/// The half-space under a plane; measured in the middle of a cube of 84 mm.
+/// The half-space below a plane; measured in the middle of a cube of 84 mm.
 Shape planeShape(const Vec3& center, const Vec3& normal) {
   return {"plane", [=](const Vec3& p) { return glm::dot(p - center, normal); },
           [=](std::mt19937& random) {
@@ -70,7 +70,8 @@ Shape planeShape(const Vec3& center, const Vec3& normal) {
           Box3{Vec3(-42), Vec3(42)}};
 }
 
-/// Voxels of the shape have label 1. `axes` in mm; the image covers the shape's box.
+/// An image in which the shape's voxels have label 1. `axes` in mm; the image covers the shape's
+/// box.
 Image voxelsOf(const Shape& shape, const Mat3& axes) {
   Image image;
   image.source = "made.nii";
@@ -99,8 +100,8 @@ Image voxelsOf(const Shape& shape, const Mat3& axes) {
 
 struct Errors {
   double bias =
-      0.0;           ///< [mm] mean of the value on the true surface; positive: the grid's is inside
-  double rms = 0.0;  ///< [mm]
+      0.0;  ///< [mm] mean value on the true surface; positive: the grid's surface is inside
+  double rms = 0.0;     ///< [mm]
   double normal = 0.0;  ///< [degree] RMS
   double worst = 0.0;   ///< [degree]
 };
@@ -164,15 +165,15 @@ TEST(LabelSurface, ThickSlicesAndAnyOrientation) {
     const Errors stretched = measured(shape, awkward, "0.8 x 1.1 x 1.6 mm");
     EXPECT_LT(stretched.normal, 1.1) << shape.name;
     EXPECT_LT(std::abs(stretched.bias), 0.05) << shape.name;
-    // Outlines of slices 3 mm apart are all that is known; at a ball's poles there are none.
+    // Only outlines of slices 3 mm apart are known; at a ball's poles there are none.
     const Errors sliced = measured(shape, thick, "1 x 1 x 3 mm");
     EXPECT_LT(sliced.normal, 5.5) << shape.name;
     EXPECT_LT(sliced.rms, 0.25) << shape.name;
   }
 }
 
-// A ball whose edge rises like a sigmoid 1.5 mm wide, with its own gradient of intensity: the
-// iso-surface is known, and differs from the half-way mask's.
+// A ball whose intensity is a sigmoid 1.5 mm wide, with a gradient of intensity: the iso-surface is
+// known, and differs from that of the half-way mask.
 TEST(ThresholdSurface, IsTheIsoSurfaceOfTheImage) {
   Mat3 thick(1.0);
   thick[2] *= 3.0;
@@ -192,7 +193,7 @@ TEST(ThresholdSurface, IsTheIsoSurfaceOfTheImage) {
         }
       }
     }
-    // Where the sigmoid has 1/4: log 3 widths outside the ball.
+    // Where the sigmoid is 1/4: log 3 widths outside the ball.
     const double out = steepest * std::log(3.0);
     const FieldPtr field = gridField(surfaceFromThreshold(image, {.above = 50}, {}));
     const Errors errors = errorsOf(*field, ballShape(kOffCenter, 22 + out));
@@ -216,7 +217,8 @@ TEST(ThresholdSurface, RefusesWhatIsNoIntensity) {
   }
 }
 
-/// A ball of two halves and a third label capping one side, so that three meet along lines.
+/// A ball of two halves, and a third label that caps one side, so that three parts meet along
+/// lines.
 Image dividedBall(const Mat3& axes) {
   const Shape ball = ballShape(kOffCenter, 20);
   Image image = voxelsOf(ball, axes);
@@ -233,8 +235,8 @@ Image dividedBall(const Mat3& axes) {
   return image;
 }
 
-// What is in the ball is in exactly one of its parts: the fields of the two that have a point least
-// have opposite signs there.
+// A point in the ball is in exactly one of its parts: of the two smallest fields there, one is
+// positive and one negative.
 TEST(LabelSurface, NeighborsShareOneWallWithoutGapOrOverlap) {
   Mat3 awkward = rotationAbout(Vec3(1, 2, 3), 0.7);
   awkward[0] *= -0.8;
@@ -256,7 +258,7 @@ TEST(LabelSurface, NeighborsShareOneWallWithoutGapOrOverlap) {
       std::sort(f.begin(), f.end());
       gap = std::max(gap, f[0]);
       overlap = std::max(overlap, -f[1]);
-      // The third is further than a few voxels: a wall of two.
+      // The third part is farther than a few voxels: a wall between two.
       if (f[2] > 3.0 && std::abs(f[0]) < 1.0) apart = std::max(apart, std::abs(f[0] + f[1]));
       if (f[2] > 3.0 && std::abs(f[0]) < 0.2) at_wall = std::max(at_wall, std::abs(f[0] + f[1]));
     }
@@ -265,7 +267,7 @@ TEST(LabelSurface, NeighborsShareOneWallWithoutGapOrOverlap) {
         "%.1e\n",
         gap, overlap, apart, at_wall);
     // Each layer's grid has its own distances to the shared wall. Along the line where three walls
-    // meet grids round their edge off.
+    // meet, grids round off the edge.
     EXPECT_LT(apart, 0.2);
     EXPECT_LT(at_wall, 0.15);
     EXPECT_LT(gap, 0.35);
@@ -273,8 +275,8 @@ TEST(LabelSurface, NeighborsShareOneWallWithoutGapOrOverlap) {
   }
 }
 
-/// Enclosed volume [voxels of the grid] as the spline has it: in 3^3 parts of every voxel by the
-/// surface, a Heaviside as wide as a part over the distances.
+/// Enclosed volume [voxels of the grid] by the spline: near the surface every voxel is divided into
+/// 3^3 parts, with a smooth step as wide as a part.
 double volumeOf(const LevelSet& grid) {
   const Image image = gridImage(grid);
   const FieldPtr field = gridField(grid);
@@ -300,8 +302,8 @@ double volumeOf(const LevelSet& grid) {
   return sum;
 }
 
-/// Every label of an image as a layer: its volume, and that no two leave a gap or overlap between
-/// two voxels that belong to them.
+/// Takes every label of an image as a layer; checks volumes, and that no two layers leave a gap or
+/// overlap between adjacent voxels.
 void checkScan(const Image& image) {
   std::map<int, std::size_t> counts;
   for (const float value : image.values) ++counts[static_cast<int>(value)];
@@ -347,14 +349,15 @@ void checkScan(const Image& image) {
     }
     const double counted = static_cast<double>(counts[labels[n]]);
     const double enclosed = volumeOf(grid);
-    // Voxel faces overstate the area of a surface of all directions by 3 / 2.
+    // Voxel faces overestimate the area of a surface with all directions by 3 / 2.
     const double area = static_cast<double>(faces) / 1.5;
     std::printf(
         "  label %3d: %7.0f voxels, %9.1f enclosed (%+.2f %%, wall %+.3f voxel), centers %zu lost, "
         "%zu won\n",
         labels[n], counted, enclosed, 100 * (enclosed / counted - 1), (enclosed - counted) / area,
         lost, won);
-    // No center won, and walls within a twentieth of a voxel on average.
+    // No layer contains another's voxel centers, and walls are within a twentieth of a voxel on
+    // average.
     EXPECT_LT(won, 10U) << labels[n];
     EXPECT_LT(std::abs(enclosed - counted), std::max(0.01 * counted, 0.05 * area)) << labels[n];
   }
@@ -391,7 +394,8 @@ void checkScan(const Image& image) {
       }
     }
   }
-  // Of grids by themselves, too, one has each point, if what is in no label counts: the smallest.
+  // With separate grids, too, each point is in exactly one layer or in the surroundings: the one
+  // with the smallest value.
   const FieldPtr united = gridField(surfaces.united(0.0, {}).value());
   std::size_t inner = 0;
   for (int k = 1; k + 2 < image.size[2]; ++k) {
@@ -438,15 +442,15 @@ Image slab(int thickness) {
   return image;
 }
 
-// Thin parts are kept where the grid's voxels can hold them, with their volume; where they cannot,
-// the grid says how many voxels it lost, and where.
+// Thin parts are kept, with their volume, where the grid's voxels can hold them; elsewhere the grid
+// says how many voxels it lost, and where.
 TEST(LabelSurface, ThinPartsAreKeptOrTold) {
   for (const int thickness : {1, 2}) {
     const Image image = slab(thickness);
     const LevelSet kept = surfaceFromLabels(image, {.values = {1}}, {});
     const ScanLoss none = scanLoss(kept.info());
     EXPECT_EQ(none.filled, 0U) << thickness;
-    // What is rounded off at the rim is not a voxel's center.
+    // Rounding at the rim loses no voxel center.
     EXPECT_LE(none.lost, 4U) << thickness;
     const FieldPtr field = gridField(kept);
     for (int i = 8; i < 20; ++i) {

@@ -1,5 +1,5 @@
-// What a label image holds, against brute force on random images, and against shapes with known
-// areas.
+// The survey of label images, compared with brute force on random images, and with shapes of known
+// area.
 #include "palpate/vdb/label_survey.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ Image imageOf(std::array<int, 3> size, const Vec3& spacing,
   return image;
 }
 
-/// Each voxel's number is random, and alike its neighbor's more often than not.
+/// A random label for each voxel, more often than not the same as its neighbor's.
 Image randomImage(unsigned seed, int labels) {
   std::mt19937 random(seed);
   std::vector<int> drawn;
@@ -48,7 +48,7 @@ Image randomImage(unsigned seed, int labels) {
   });
 }
 
-/// Pieces by flooding from every voxel: their numbers and sizes, sorted.
+/// Pieces found by flood fill from every voxel: their labels and sizes, sorted.
 std::vector<std::pair<int, std::uint64_t>> floodedPieces(const Image& image, int open_label) {
   const int nx = image.size[0];
   const int ny = image.size[1];
@@ -156,8 +156,8 @@ TEST(LabelSurvey, ContactsOfRandomImagesAreTheirFacesCountedOneByOne) {
 }
 
 TEST(LabelSurvey, WhatEncloses) {
-  // Balls in one another about the middle: body 18, muscle 14, shell 9 of bone, core 6; and a nerve
-  // of 3 voxels that leads from outside into the muscle.
+  // Nested balls about the middle: body 18, muscle 14, a shell of bone 9, core 6; and a nerve of 3
+  // voxels that leads from outside into the muscle.
   const Image image = imageOf({41, 41, 41}, Vec3(kMm), [](int i, int j, int k) {
     const double r = std::hypot(i - 20, j - 20, k - 20);
     if (j == 20 && k == 20 && i < 9) return 4;
@@ -176,19 +176,19 @@ TEST(LabelSurvey, WhatEncloses) {
   EXPECT_EQ(survey.regions[1].within, 0U);
   EXPECT_EQ(survey.regions[2].within, 1U);
   EXPECT_FALSE(survey.regions[3].within.has_value());
-  // The core touches nothing but its shell.
+  // The core touches only its shell.
   ASSERT_EQ(survey.regions[2].contacts.size(), 1U);
   EXPECT_EQ(survey.regions[2].contacts[0].other, 1U);
   EXPECT_TRUE(survey.regions[3].at_border);
   EXPECT_FALSE(survey.regions[0].at_border);
 
-  // Without the nerve all is within the gap.
+  // Without the nerve everything is within the gap.
   const LabelSurvey without = surveyLabels(image, {{1}, {2}, {3}}, &body);
   EXPECT_EQ(without.regions[0].within, without.gap());
 }
 
 TEST(LabelSurvey, WhatTheBorderCutsIsNotOpenThere) {
-  // A rod in a tube, both from end to end of the image.
+  // A rod in a tube; both reach from end to end of the image.
   const auto rod = [](double rest) {
     return imageOf({21, 21, 9}, Vec3(kMm), [rest](int i, int j, int) {
       const double r = std::hypot(i - 10, j - 10);
@@ -199,7 +199,7 @@ TEST(LabelSurvey, WhatTheBorderCutsIsNotOpenThere) {
   EXPECT_FALSE(survey.regions[0].within.has_value());
   EXPECT_EQ(survey.regions[1].within, 0U);
   EXPECT_GT(survey.regions[1].border, 0.0);
-  // Where all voxels have a label, the border is all that there is outside.
+  // If all voxels have a label, only the image's border is outside.
   const LabelSurvey full = surveyLabels(rod(3), {{1}, {2}, {3}}, nullptr);
   for (const auto& region : full.regions) EXPECT_FALSE(region.within.has_value());
 }
@@ -213,16 +213,16 @@ TEST(LabelSurvey, AreaAndVolumeOfABallInLongVoxels) {
   });
   const LabelSurvey survey = surveyLabels(image, {{7}}, nullptr);
   const double area = 4.0 * std::numbers::pi * kRadius * kRadius;
-  // All directions are there, so that faces average to 3/2 of the area; slices of 3 mm cost some
-  // percent.
+  // All directions occur, so that faces average to 3/2 of the area; slices of 3 mm cause an error
+  // of some percent.
   EXPECT_NEAR(survey.regions[0].area, area, 0.03 * area);
   EXPECT_NEAR(survey.regions[0].volume, area * kRadius / 3.0, 0.02 * area * kRadius / 3.0);
   EXPECT_NEAR(survey.regions[0].bounds.size().x, 40.0 * kMm, 1e-12);
 }
 
 TEST(LabelSurvey, IslandsAndCavities) {
-  // A block of label 1 with a cavity of two voxels that meet at an edge, an island of label 2
-  // (whose largest piece is elsewhere) in it, and a speck of label 1 apart.
+  // A block of label 1 with a cavity of two voxels that meet at an edge, in it an island of label 2
+  // (whose largest piece is elsewhere), and a separate speck of label 1.
   const auto label = [](int i, int j, int k) {
     if ((i == 4 && j == 4 && k == 4) || (i == 5 && j == 5 && k == 4)) return 0;
     if (i == 6 && j == 6 && k == 6) return 2;
@@ -246,7 +246,7 @@ TEST(LabelSurvey, IslandsAndCavities) {
   EXPECT_EQ(merged.at(4, 4, 4), 1.0F);
   EXPECT_EQ(merged.at(5, 5, 4), 1.0F);
   EXPECT_EQ(merged.at(6, 6, 6), 1.0F);
-  EXPECT_EQ(merged.at(2, 12, 12), 0.0F);  // air is what is around it
+  EXPECT_EQ(merged.at(2, 12, 12), 0.0F);  // its surroundings are air
   const LabelSurvey after = surveyLabels(merged, regions, nullptr);
   for (const auto& region : after.regions) EXPECT_LE(region.pieces.size(), 1U);
 
@@ -317,11 +317,11 @@ TEST(LabelSurvey, CountsAndWhatIsNoLabelImage) {
         << error.problem().message;
     EXPECT_EQ(error.problem().file, "labels.nii");
   }
-  // What counts for none, over and over, from the first voxel on.
+  // Values below 0, which are not labels, in many voxels from the first one on.
   Image below = image;
   std::fill(below.values.begin(), below.values.begin() + 60, -1.0F);
   EXPECT_EQ(errorOf([&] { (void)countLabels(below); }).problem().code, "labels.not_labels");
-  // Gray values are whole numbers too.
+  // Gray values are integers too.
   std::mt19937 random(7);
   const Image gray = imageOf({20, 20, 20}, Vec3(kMm),
                              [&](int, int, int) { return static_cast<int>(random() % 256); });

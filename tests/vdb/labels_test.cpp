@@ -1,4 +1,4 @@
-// Tables of label names, and which labels a scene's `match` means.
+// Tables of label names, and the labels that a scene's `match` means.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -72,7 +72,7 @@ TEST(NameTable, RefusesWhatItCannotBeSureOf) {
   expectRefused("1 a\n2\n", "labels.table_row", 2, "label 2 has no name");
   expectRefused("value,name\nvalue,name\n", "labels.table_row", 2, "`value`");
   expectRefused("1 left lobe\n", "labels.table_row", 1, "`lobe`");
-  // A name in quotes where ITK-SNAP has none.
+  // A quoted name in a column where ITK-SNAP has none.
   expectRefused("1 255 0 0 1 1 \"liver\"\n", "labels.table_row", 1, "\"liver\"");
   expectRefused("1 255 0 0 1 1 1 \"a\"\n2 255 0 0 1 1 b\n", "labels.table_row", 2, "ITK-SNAP");
   expectRefused("1 255 0 0 1 x 1 \"a\"\n", "labels.table_row", 1, "`x`");
@@ -131,11 +131,11 @@ TEST(ResolveLabels, TakesValuesNamesAndGlobs) {
   const auto resolve = [](std::vector<std::string> match) {
     return resolveLabels(match, kNames, "labels.csv");
   };
-  EXPECT_EQ(resolve({"12"}), (std::vector{12}));  // a value needs no name
+  EXPECT_EQ(resolve({"12"}), (std::vector{12}));  // a value need not have a name
   EXPECT_EQ(resolve({"liver"}), (std::vector{5, 9}));
   EXPECT_EQ(resolve({"rib_*_1", "4", "rib_left_?"}), (std::vector{3, 4, 8}));
   EXPECT_EQ(resolve({"background"}), (std::vector{0}));
-  EXPECT_EQ(resolve({"*"}), (std::vector{3, 4, 5, 8, 9}));  // all but the background
+  EXPECT_EQ(resolve({"*"}), (std::vector{3, 4, 5, 8, 9}));  // all except the background
   EXPECT_EQ(resolveLabels({"7", "-2"}, {}, ""), (std::vector{-2, 7}));
 }
 

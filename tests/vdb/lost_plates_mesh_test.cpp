@@ -1,5 +1,4 @@
-// Meshes with parts too thin for their voxels: refused where the grid would have holes, and only
-// there.
+// Meshes with parts too thin for their voxels: refused if the grid would have holes, and only then.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +29,7 @@ Mesh turned(Mesh mesh, const Vec3& axis, double degrees) {
   return mesh;
 }
 
-/// The code of the error, or nothing where the mesh bakes.
+/// The error, or an empty one if the mesh bakes.
 Problem outcome(const Mesh& mesh, MeshSign sign = MeshSign::kVote) {
   BakeOptions options = voxels(kVoxel, 3.0);
   options.mesh_sign = sign;
@@ -42,8 +41,8 @@ Problem outcome(const Mesh& mesh, MeshSign sign = MeshSign::kVote) {
   return {};
 }
 
-/// [voxels] The largest trilinear value on the middle plane of an endless plate, out of exact
-/// distances at the voxels: above 0, where a grid has a hole.
+/// [voxels] The largest trilinear value in the middle plane of an infinite plate, from exact
+/// distances at the voxels: above 0 the grid has a hole.
 double worstInMiddle(const Vec3& normal, double thickness) {
   const double offset = glm::dot(normal, kCenter) / kVoxel;
   const auto at_voxel = [&](const Vec3& p) {
@@ -88,7 +87,7 @@ TEST(LostPlatesOfMeshes, PlatesAreRefusedWhereTheGridHasHoles) {
           turned(boxMesh(kCenter, Vec3(20.0, 20.0, thickness) * kVoxel), turn.axis, turn.degrees);
       const Problem problem = outcome(plate);
       const double worst = worstInMiddle(normal, thickness);
-      // Points of the search and those here are not the same: by the border both are right.
+      // The points of the search and of this test differ: near the limit both answers are right.
       if (worst > 0.03) {
         EXPECT_TRUE(problem.code == "bake.too_thin" || problem.code == "bake.empty")
             << problem.code << ", " << worst;
@@ -112,7 +111,7 @@ TEST(LostPlatesOfMeshes, HowAMeshIsTurnedAndPutTogetherDoesNotMatter) {
   Mesh inside_out = plate;
   for (auto& t : inside_out.triangles) std::swap(t[1], t[2]);
   EXPECT_EQ(outcome(inside_out).code, "bake.too_thin");
-  // A web between two blocks that overlap with it, so that walls are cut away.
+  // A web between two blocks that overlap with it, so that parts of walls are cut away.
   const Vec3 aside(14e-3, 0.0, 0.0);
   const auto block = [&](const Vec3& at) { return boxMesh(kCenter + at, Vec3(10e-3)); };
   const auto webbed = [&](double thickness) {
@@ -137,7 +136,7 @@ TEST(LostPlatesOfMeshes, AThinSpotBetweenACavityAndTheOutside) {
   EXPECT_EQ(outcome(hollow(1.2)).code, "");
 }
 
-/// A prism over a triangle with `degrees` at its edge, 24 voxels high from there.
+/// A prism over a triangle with an angle of `degrees` at its edge, 24 voxels high from there.
 Mesh wedge(double degrees) {
   Mesh mesh;
   const double half = 24e-3 * std::tan(0.5 * degrees * kDegree);

@@ -1,4 +1,4 @@
-// Wires and crumbs thinner than their voxels: told where the grid has lost them, and only there.
+// Wires and crumbs thinner than their voxels: reported if the grid has lost them, and only then.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ constexpr double kVoxel = 1e-3;
 const Vec3 kCenter(0.31e-3, -0.17e-3, 0.23e-3);
 const Vec3 kSlanted = glm::normalize(Vec3(0.36, 0.48, 0.8));
 
-/// What a grid says of parts that it has lost.
+/// The grid's message about parts that it has lost.
 std::string lostParts(const LevelSet& set) {
   const auto found = set.info().metadata.find("lost_parts");
   return found == set.info().metadata.end() ? "" : found->second;
@@ -32,7 +32,7 @@ std::string lostParts(const FieldPtr& field) {
   return lostParts(bake(*field, voxels(kVoxel, 3.0)));
 }
 
-/// A tube of `sides` flat sides along a path of points, closed at both ends.
+/// A tube with `sides` flat sides along a path of points, closed at both ends.
 Mesh tube(const std::vector<Vec3>& path, double radius, std::uint32_t sides) {
   Mesh mesh;
   const auto count = static_cast<std::uint32_t>(path.size());
@@ -98,7 +98,7 @@ TEST(LostWires, AWireBetweenTwoBallsIsToldWithItsPlace) {
         EXPECT_LT(std::abs(glm::dot(place - kCenter, along)), 12e-3) << told;
       }
     }
-    // A rod of two voxels holds a voxel in every cut.
+    // A rod of two voxels contains a voxel in every cross section.
     const Mesh thick = rod(kCenter - 12e-3 * along, kCenter + 12e-3 * along, 2e-3, 24);
     EXPECT_EQ(lostParts(together(balls, thick)), "");
   }
@@ -123,11 +123,11 @@ TEST(LostWires, AStubAHelixAHandleAndARibbonAreTold) {
   }
   is_told(tube(helix, 0.15e-3, 6), "helix");
   is_told(tube(handle, 0.2e-3, 6), "handle");
-  // Too narrow for a plate, whose four sides must go on.
+  // Too narrow for a plate, which must go on in all four directions.
   is_told(boxMesh(kCenter + Vec3(0.27e-3, 0.67e-3, 14e-3), Vec3(3e-3, 0.3e-3, 20e-3)), "ribbon");
 }
 
-/// A cone of a right angle and less on a ball is not a wire, however much of its tip is lost.
+/// A cone of at most a right angle is not a wire, however much of its tip is lost.
 TEST(LostWires, TipsAndEdgesAreNone) {
   for (const double half_angle : {3.0, 6.0, 15.0, 30.0}) {
     const double radius = 20e-3 * std::tan(half_angle * std::numbers::pi / 180.0);
@@ -142,7 +142,7 @@ TEST(LostWires, TipsAndEdgesAreNone) {
 TEST(LostWires, CrumbsAreToldWithTheirPlace) {
   const Mesh ball = ballMesh(kCenter, 8e-3, 3);
   const auto with = [&](const Mesh& other) { return lostParts(together(ball, other)); };
-  const Vec3 between(14.5e-3, 0.5e-3, 0.5e-3);  // as far from all voxels as can be
+  const Vec3 between(14.5e-3, 0.5e-3, 0.5e-3);  // as far from all voxels as possible
   for (const double diameter : {0.02e-3, 0.3e-3, 0.8e-3}) {
     const std::string told = with(ballMesh(between, 0.5 * diameter, 2));
     EXPECT_EQ(told.find("1 separate part"), 0U) << told;
@@ -151,12 +151,12 @@ TEST(LostWires, CrumbsAreToldWithTheirPlace) {
   // A small plate, and a short rod.
   EXPECT_NE(with(boxMesh(between, Vec3(3e-3, 0.4e-3, 2e-3))), "");
   EXPECT_NE(with(rod(between, between + Vec3(1.5e-3, 0.0, 0.0), 0.4e-3)), "");
-  // Two, of which the larger one is named.
+  // Two crumbs, of which the message names the larger one.
   const Vec3 other = between + Vec3(0.0, 9e-3, 0.0);
   const std::string two = with(together(ballMesh(between, 0.1e-3, 2), ballMesh(other, 0.3e-3, 2)));
   EXPECT_EQ(two.find("2 separate parts"), 0U) << two;
   EXPECT_LT(glm::distance(placeIn(two), other), 0.3e-3) << two;
-  // What has a voxel is there.
+  // A part that contains a voxel is not lost.
   EXPECT_EQ(with(ballMesh(between, 0.9e-3, 2)), "");
   EXPECT_EQ(with(ballMesh(between + Vec3(0.4e-3), 0.4e-3, 2)), "");
 }

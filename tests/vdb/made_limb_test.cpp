@@ -1,5 +1,5 @@
-// A made limb of three cylinders, oblique in oblique voxels: where its files place it, and where
-// its walls are.
+// A synthetic limb of three cylinders, oblique in oblique voxels: its place in files, and the place
+// of its walls.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ Vec3 cornerOf(const Image& image, int corner) {
   return index;
 }
 
-/// How far the corners of two images are apart at most [mm].
+/// Largest distance between corresponding corners of two images [mm].
 double apart(const Image& a, const Image& b) {
   double worst = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -66,7 +66,7 @@ TEST(MadeLimb, IsOnePlaceInNiftiNrrdAndDicom) {
   for (const Image* image : {&nifti, &nrrd, &dicom}) {
     EXPECT_EQ(image->size, made.size);
     EXPECT_EQ(image->values, made.values);
-    // NIfTI holds single precision, 100 mm to 24 bits; the others 12 digits.
+    // NIfTI holds single precision, 100 mm to 24 bits; the other formats 12 digits.
     EXPECT_LT(apart(*image, made), 2e-5);
   }
   const test::ItkImage itk = test::readWithItk(nrrd_file);
@@ -81,7 +81,7 @@ TEST(MadeLimb, IsOnePlaceInNiftiNrrdAndDicom) {
 TEST(MadeLimb, LabelsOfOneGridLieOnTheSlicesOfAnother) {
   const TempFolder folder;
   const Limb limb;
-  // Mirrored for the labels: as many files have x from the right to the left.
+  // The labels are mirrored: in many files x runs from right to left.
   const std::string labels = test::writeNifti(
       limb.labels(test::obliqueAxes(Vec3(-1.5, 1.5, 1.5), -0.3)), folder, "labels.nii.gz");
   const std::string series =
@@ -107,15 +107,16 @@ TEST(MadeLimb, LabelsOfOneGridLieOnTheSlicesOfAnother) {
   const auto expected = test::askPython("mean", {series, labels, "1", "1"});
   EXPECT_EQ(static_cast<double>(count), expected.at(0).at(1));
   EXPECT_NEAR(mean, expected[0][0], 1e-6);
-  // Half a voxel off, one way as often as the other; if the labels lay elsewhere, muscle would be
-  // in the mean.
+  // Half a voxel off, to both sides equally often; if the labels were at another place, muscle
+  // would enter the mean.
   EXPECT_NEAR(mean, truth / static_cast<double>(count), 10.0);
   // pi r^2 l of 1.5 mm voxels.
   const double voxels = std::numbers::pi * Limb::kBone * Limb::kBone * 2.0 * Limb::kHalf / 3.375;
   EXPECT_NEAR(static_cast<double>(count) / voxels, 1.0, 0.02);
 }
 
-/// Where a field is on a cylinder around the limb, away from its ends: mean and worst [mm].
+/// Offset of a field's surface from a cylinder around the limb, away from its ends: mean and worst
+/// [mm].
 struct Offset {
   double mean = 0.0;
   double worst = 0.0;
@@ -166,13 +167,14 @@ TEST(MadeLimb, WallsOfItsLabelsAreItsCylinders) {
     const Offset offset = offsetOf(*field, limb, radius);
     std::printf("  wall at %4.1f mm: %+.3f mm in the mean, %.3f at most\n", radius, offset.mean,
                 offset.worst);
-    // Voxels of 1 mm say of a wall that it passes between their centers: within a third of a voxel,
-    // and in the mean next to nothing.
+    // Labels with voxels of 1 mm only say between which centers a wall is: it is within a third of
+    // a voxel, with a mean error near zero.
     EXPECT_LT(std::abs(offset.mean), 0.05);
     EXPECT_LT(offset.worst, 0.35);
   }
   const auto cylinder = [](double r) { return std::numbers::pi * r * r * 2.0 * Limb::kHalf; };
-  // Rims are rounded off by some tenths of a voxel, which is some promille of these volumes.
+  // Rims are rounded off by some tenths of a voxel, which is some tenths of a percent of these
+  // volumes.
   EXPECT_NEAR(volumeOf(*bone) / cylinder(Limb::kBone), 1.0, 0.01);
   EXPECT_NEAR(volumeOf(*muscle) / (cylinder(Limb::kMuscle) - cylinder(Limb::kBone)), 1.0, 0.01);
   EXPECT_NEAR(volumeOf(*fat) / (cylinder(Limb::kBody) - cylinder(Limb::kMuscle)), 1.0, 0.01);
@@ -190,7 +192,7 @@ TEST(MadeLimb, WallsOfItsSlicesAreItsCylinders) {
         offsetOf(*gridField(surfaceFromThreshold(image, {.above = above}, {})), limb, radius);
     std::printf("  wall at %4.1f mm: %+.3f mm in the mean, %.3f at most\n", radius, offset.mean,
                 offset.worst);
-    // Gray values say where between two voxels a wall is: to a fiftieth of the smallest.
+    // Gray values say where between two voxels a wall is: to a fiftieth of the smallest voxel.
     EXPECT_LT(std::abs(offset.mean), 0.005);
     EXPECT_LT(offset.worst, 0.02);
   }

@@ -16,7 +16,7 @@ std::string text(double number) {
   return out;
 }
 
-/// The patient's axes of DICOM and NRRD: x and y run the other way. [mm]
+/// The patient's axes of DICOM and NRRD: x and y run in the opposite directions. [mm]
 Vec3 lps(const Vec3& ras) { return Vec3(-ras.x, -ras.y, ras.z); }
 
 std::string listed(const Vec3& v, const std::string& between) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Scans of shapes whose numbers are known, made voxel by voxel; and files of them by the tests'
-/// own writers, so that the readers are not tested against the library that they are part of.
+/// Synthetic scans of shapes with known dimensions, made voxel by voxel; and files of them by the
+/// tests' own writers, so that readers are not tested with the library that they belong to.
 
 #include <functional>
 #include <random>
@@ -12,15 +12,16 @@
 
 namespace palpate::vdb::test {
 
-/// Any direction is as likely.
+/// A random direction, all equally likely.
 [[nodiscard]] Vec3 direction(std::mt19937& random);
 
-/// Voxels of `axes` [mm] around `center` [mm], as many as a cube of `side` [mm] takes however it is
-/// turned, each with the value at its own center [mm].
+/// Voxels of `axes` [mm] around `center` [mm], as many as are needed for a cube of `side` [mm] in
+/// any orientation; each has the value at its own center [mm].
 [[nodiscard]] Image imageAround(const Vec3& center, const Mat3& axes, double side,
                                 const std::function<double(const Vec3&)>& value);
 
-/// Cubic, anisotropic or mirrored voxels [mm], turned about an axis that is none of the image's.
+/// Cubic, anisotropic or mirrored voxels [mm], rotated about an axis that is not an axis of the
+/// image.
 [[nodiscard]] Mat3 obliqueAxes(const Vec3& spacing, double angle = 0.6);
 
 /// Three cylinders with flat ends: bone within muscle within fat. Their common axis is oblique to
@@ -39,35 +40,35 @@ struct Limb {
   Vec3 axis = glm::normalize(Vec3(0.3, -0.4, 0.9));
   Vec3 across = glm::normalize(glm::cross(axis, Vec3(1, 0, 0)));
 
-  /// A way out of the axis, square to it.
+  /// A direction away from the axis, perpendicular to it.
   [[nodiscard]] Vec3 outwards(double angle) const;
   [[nodiscard]] double radius(const Vec3& mm) const;
   /// 1 bone, 2 muscle, 3 fat, 0 what is around.
   [[nodiscard]] double label(const Vec3& mm) const;
-  /// Hounsfield units: half-way between two materials at their wall, and all of the way 1.5 mm from
-  /// it.
+  /// Hounsfield units: at a wall half-way between the two materials, and the pure value from 1.5 mm
+  /// on.
   [[nodiscard]] double ct(const Vec3& mm) const;
 
   [[nodiscard]] Image labels(const Mat3& axes) const;
   [[nodiscard]] Image scan(const Mat3& axes) const;
 };
 
-/// Labels or whole numbers as NIfTI (sform, bytes or shorts); the path.
+/// Writes labels or integers as NIfTI (sform, bytes or shorts); returns the path.
 std::string writeNifti(const Image& image, const palpate::testing::TempFolder& folder,
                        const std::string& name);
 /// The same as NRRD, LPS.
 std::string writeNrrd(const Image& image, const palpate::testing::TempFolder& folder,
                       const std::string& name);
-/// The same as a DICOM series of as many slices; the folder.
+/// The same as a DICOM series of as many slices; returns the folder.
 std::string writeDicom(const Image& image, const palpate::testing::TempFolder& folder,
                        const std::string& name);
 
-/// A segment of a .seg.nrrd, of all voxels whose value is not 0.
+/// A segment for a .seg.nrrd: all voxels whose value is not 0.
 struct Segment {
   std::string name;
   Image voxels;
 };
-/// Segments that may overlap: each has a layer of its own, with the value 1.
+/// Writes segments that may overlap: each has its own layer, with the value 1.
 std::string writeSegments(const std::vector<Segment>& segments,
                           const palpate::testing::TempFolder& folder, const std::string& name);
 

@@ -1,4 +1,5 @@
-// Made segments that overlap: the later one of the file has what they share, and the wall there.
+// Synthetic segments that overlap: the later one in the file gets the shared voxels, and the wall
+// there.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,8 +66,8 @@ TEST(MadeSegments, WhereTheyOverlapTheLaterHasTheVoxelsAndTheWall) {
                                : in_first  ? label_of(first)
                                            : 0.0F);
   }
-  // Voxels are 1 mm^3 each: those of the slab, of a ball, and of the lens that two balls share,
-  // which the reader reports.
+  // Voxels are 1 mm^3 each: those of the slab, of a ball, and of the lens that two balls share, as
+  // the reader reports them.
   const auto voxels_of = [&](const test::Segment& segment) {
     return static_cast<double>(countOf(image, label_of(segment)));
   };
@@ -81,7 +82,8 @@ TEST(MadeSegments, WhereTheyOverlapTheLaterHasTheVoxelsAndTheWall) {
   EXPECT_NEAR(static_cast<double>(both) / lens, 1.0, 0.02);
   EXPECT_NEAR(static_cast<double>(countOf(first.voxels, 1.0F)) / ball, 1.0, 0.02);
 
-  // Walls: the right ball's is its sphere, in the left ball too; the slab's is flat in both.
+  // Walls: the right ball's wall is its sphere, also inside the left ball; the slab's is flat in
+  // both.
   LabelSurfaces surfaces(
       image, {{labels.at("left ball")}, {labels.at("right ball")}, {labels.at("slab")}});
   const FieldPtr fields[] = {gridField(surfaces.surface(0, 0.0, {})),
@@ -92,7 +94,7 @@ TEST(MadeSegments, WhereTheyOverlapTheLaterHasTheVoxelsAndTheWall) {
   int spheres = 0, flats = 0;
   for (int n = 0; n < 20'000; ++n) {
     const Vec3 p = right + kRadius * test::direction(random);
-    // Away from the slab and from where three meet.
+    // Away from the slab and from places where three parts meet.
     if (std::abs(p.z) > 0.5 * kSlab + 2.0 && glm::length(p - left) < kRadius - 2.0) {
       sphere = std::max(sphere, std::abs(fields[1]->value(p * kMm)) / kMm);
       sphere = std::max(sphere, std::abs(fields[0]->value(p * kMm)) / kMm);

@@ -1,4 +1,4 @@
-// Made scans of what is hard for voxels: a shell of hardly two of them, and folds that touch.
+// Synthetic scans that are hard for voxels: a shell of barely two voxels, and folds that touch.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ ScenePtr sceneOf(const FieldPtr& field, double stiffness) {
   return compile(description);
 }
 
-/// The last tick of a hand on its way from one point to another [mm], 0.05 mm a tick.
+/// The last tick of a hand that moves from one point to another [mm], 0.05 mm per tick.
 TickResult pressed(const ScenePtr& scene, const Vec3& from, const Vec3& to) {
   const std::unique_ptr<HapticRenderer> renderer = makeRenderer(scene);
   const int ticks = static_cast<int>(glm::length(to - from) / 0.05);
@@ -48,7 +48,8 @@ TickResult pressed(const ScenePtr& scene, const Vec3& from, const Vec3& to) {
   return result;
 }
 
-// Of 1.5 voxels in a grid of twice as many, of two voxels in one as the scan.
+// A shell of 1.5 voxels in a grid with half the voxel size, and one of two voxels in a grid like
+// the scan.
 TEST(MadeShell, OfOneToTwoVoxelsHasTwoWallsAndNoHole) {
   const Vec3 center(4, -9, 21);
   constexpr double kRadius = 16.0;
@@ -90,7 +91,7 @@ TEST(MadeShell, OfOneToTwoVoxelsHasTwoWallsAndNoHole) {
     EXPECT_NEAR(inner, 0.0, 0.15);
     EXPECT_NEAR(outer, 0.0, 0.15);
     EXPECT_LT(worst, 1.0);
-    // What is within is not of the shell: a probe is held on both sides, 0.4 mm deep.
+    // The inside of the shell is not part of it: a probe is held on both sides, 0.4 mm deep.
     const ScenePtr scene = sceneOf(field, 500.0);
     const Vec3 way = glm::normalize(Vec3(0.2, 0.9, -0.3));
     for (const double side : {1.0, -1.0}) {
@@ -99,14 +100,14 @@ TEST(MadeShell, OfOneToTwoVoxelsHasTwoWallsAndNoHole) {
           pressed(scene, center + (wall + side * 3.0) * way, center + (wall - side * 0.4) * way);
       EXPECT_TRUE(held.contact);
       EXPECT_GT(side * glm::dot(held.force, way), 0.0);
-      // Within a third of a voxel, as walls of labels are.
+      // Within a third of a voxel, like walls of labels.
       EXPECT_NEAR(glm::length(held.force), 500.0 * 0.4 * kMm, 500.0 * 0.33 * kMm);
     }
   }
 }
 
-/// How many of `rays` from the middle out meet no wall within 2 mm of `radius` [mm], and the place
-/// of one [mm].
+/// How many of `rays` outwards from the middle meet no wall within 2 mm of `radius` [mm], and the
+/// place of one of them [mm].
 struct Holes {
   int count = 0;
   Vec3 place{0.0};
@@ -131,7 +132,7 @@ Image shellOf(const Vec3& center, const Mat3& axes, double radius, double thickn
   });
 }
 
-// Where its wall is a single voxel between places of two, smoothing leaves 0.06 mm of it, and a
+// Where the wall is a single voxel between places of two, smoothing leaves 0.06 mm of it, and a
 // grid of the scan's voxels has a hole there, in 1 of 4000 directions.
 TEST(MadeShell, OfOneAndAHalfVoxelsReportsItsHoleInAGridOfTheScansVoxels) {
   const Vec3 center(4, -9, 21);
@@ -157,7 +158,7 @@ TEST(MadeShell, OfOneAndAHalfVoxelsAndMoreReportsEveryHole) {
     };
     const Vec3 center(in(-10, 10), in(-10, 10), in(-10, 10));
     const double radius = in(6, 14);
-    // A mask's outside voxels hang together across edges: a wall thinner than the diagonal of a
+    // A mask's outside voxels are connected across edges: a wall thinner than the diagonal of a
     // voxel's face may be open in the scan itself.
     const double thickness = in(1.42, 2);
     const double voxel = in(0.5, 1);
@@ -174,14 +175,14 @@ TEST(MadeShell, OfOneAndAHalfVoxelsAndMoreReportsEveryHole) {
   std::printf("  %d of %d shells have holes, all reported\n", with_holes, shells);
 }
 
-/// A sheet 3 mm thick around z = 8 sin(2 pi x / 9), as long as it likes along y: gyri and sulci,
-/// which close to nothing at their bottoms. [mm]
+/// A sheet 3 mm thick around z = 8 sin(2 pi x / 9), unbounded along y: gyri and sulci whose banks
+/// nearly touch at the bottom. [mm]
 struct Cortex {
   static constexpr double kHeight = 8.0;
   static constexpr double kLength = 9.0;
   static constexpr double kThickness = 3.0;
 
-  /// Negative within the sheet.
+  /// Negative inside the sheet.
   [[nodiscard]] static double distance(const Vec3& p) {
     double nearest = 1e9;
     constexpr double kStep = 0.02;
@@ -194,7 +195,7 @@ struct Cortex {
 };
 
 TEST(MadeCortex, FoldsThatTouchKeepTheirSulciAsFarAsVoxelsTellThem) {
-  // Level voxels: the values of a row along y are the same, and counted once.
+  // Voxels aligned with the axes: the values along a row in y are the same, and are computed once.
   Image image;
   image.source = "cortex.nii";
   image.size = {44, 9, 27};
@@ -217,8 +218,8 @@ TEST(MadeCortex, FoldsThatTouchKeepTheirSulciAsFarAsVoxelsTellThem) {
   EXPECT_EQ(scanLoss(set.info()).lost + scanLoss(set.info()).filled, 0U);
   const FieldPtr field = gridField(set);
 
-  // Nothing is known of a place nearer to the wall than half a voxel's diagonal; all others are on
-  // their side.
+  // A place nearer to the wall than half a voxel's diagonal may be on either side; all others are
+  // on their own side.
   std::mt19937 random(4);
   std::uniform_real_distribution<double> x(-16, 16), y(-2, 2), z(-12, 12);
   std::size_t known = 0, wrong = 0, sulci = 0;
@@ -241,9 +242,9 @@ TEST(MadeCortex, FoldsThatTouchKeepTheirSulciAsFarAsVoxelsTellThem) {
   EXPECT_GT(sulci, 300U);
   EXPECT_EQ(wrong, 0U);
 
-  // Down into a sulcus, and from there 2.5 mm into one of its banks: the probe stays in it,
-  // although the next sulcus is hardly farther. The bank at this height is steep; what is felt is K
-  // times the depth, to half a voxel and its slope.
+  // Down into a sulcus, and from there 2.5 mm into one of its banks: the probe stays in this
+  // sulcus, although the next one is hardly farther. The bank is steep at this height; the force is
+  // K times the depth, within half a voxel and the effect of the slope.
   const ScenePtr scene = sceneOf(field, 400.0);
   const double valley = -0.25 * Cortex::kLength;  // where the sheet is lowest
   const Vec3 mouth(valley, 0, 12), middle(valley, 0, 3);

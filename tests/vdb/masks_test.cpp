@@ -1,5 +1,5 @@
-// Masks of one structure each, in a folder or listed: one label image, whose voxels lie where
-// nibabel has them.
+// Masks of one structure each, in a folder or listed: they become one label image, whose voxels are
+// where nibabel has them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::string write(const TempFolder& folder, const std::string& name, const Nifti
                      std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
-/// Voxels `set` of 6 x 5 x 4 are `value`.
+/// A mask of 6 x 5 x 4 voxels in which the voxels `set` have the value `value`.
 NiftiFile maskOf(const std::vector<std::size_t>& set, double value = 1.0) {
   NiftiFile file;
   file.dim = {6, 5, 4};
@@ -96,12 +96,12 @@ TEST(Masks, WhereTheyOverlapTheSmallestHasTheVoxelUnlessThePrioritySaysSo) {
   (void)write(folder, "m/a_tumor.nii", maskOf({10, 11}));
   (void)write(folder, "m/b_liver.nii", maskOf({9, 10, 11, 12, 13}));
   (void)write(folder, "m/c_late.nii", maskOf({13, 14}));   // as large as the tumor
-  (void)write(folder, "m/d_equal.nii", maskOf({14, 15}));  // later than what it overlaps
+  (void)write(folder, "m/d_equal.nii", maskOf({14, 15}));  // later than the one it overlaps
   (void)write(folder, "m/e_none.nii", maskOf({}));
   const Image image = readImage(folder.path("m"));
   EXPECT_EQ((std::vector<float>(image.values.begin() + 9, image.values.begin() + 16)),
             (std::vector<float>{2, 1, 1, 2, 3, 4, 4}));
-  // Four voxels of 8 mm^3 are in two masks: two of the tumor, one of each of the others.
+  // Four voxels of 8 mm^3 are in two masks: two of the tumor, one of each other mask.
   EXPECT_TRUE(hasNote(image, "4 voxels (0.032 cm^3) are in several masks, and the smallest"))
       << image.notes.front();
   EXPECT_TRUE(hasNote(image, "a_tumor has 0.016 cm^3 of b_liver"));
@@ -119,7 +119,7 @@ TEST(Masks, WhereTheyOverlapTheSmallestHasTheVoxelUnlessThePrioritySaysSo) {
   const Problem problem = errorOf([&] { (void)readImage(folder.path("m"), options); }).problem();
   EXPECT_EQ(problem.code, "labels.priority");
   EXPECT_NE(problem.hint.find("b_liver"), std::string::npos);
-  // One image of labels has nothing that a priority could order.
+  // A single image of labels has nothing that a priority could order.
   EXPECT_EQ(errorOf([&] { (void)readImage(folder.path("m/a_tumor.nii"), options); }).problem().code,
             "image.option");
 }
@@ -179,7 +179,7 @@ TEST(Masks, OnAnotherGridAreRefusedWithTheShift) {
   mirrored.sform[0][0] = -2.0;
   EXPECT_NE(message_of(mirrored).find("axes LAS, there 6 x 5 x 4 voxels of 2 x 2 x 2 mm, axes RAS"),
             std::string::npos);
-  // Two programs write one place with different last digits.
+  // Two programs write the same place with different last digits.
   NiftiFile close = maskOf({7});
   close.sform[0][3] += 0.002;
   ImageOptions options;
@@ -208,7 +208,7 @@ TEST(Masks, GrayValuesAndDamageAreRefusedByFileAndPlace) {
     EXPECT_EQ(error.kind(), ErrorKind::kInput);
     EXPECT_EQ(error.problem().file, file) << error.what();
   }
-  // Files that a file manager or another program left there are passed over.
+  // Files that a file manager or another program left there are ignored.
   std::filesystem::remove(file);
   (void)folder.file("m/._a.nii.gz", "not an image");
   (void)folder.file("m/statistics.json", "{}");
@@ -224,8 +224,8 @@ TEST(Masks, OfAScanLieWhereNibabelHasThem) {
   EXPECT_EQ(image.labels.names.size(), 61U);
   test::expectLabelsAt(
       image, test::askScript(test::kStructuresOracle, "masks", {folder.path(), "1000", "5"}), 1000);
-  // The files are called by label and sorted so: the volume that they were made of has the same
-  // order.
+  // The files are named by label and sorted by name: the volume that they were made from has the
+  // same order.
   const Image whole = readImage(labels);
   for (std::size_t v = 0; v < whole.values.size(); ++v) {
     if (whole.values[v] == 0.0F) {
@@ -238,7 +238,8 @@ TEST(Masks, OfAScanLieWhereNibabelHasThem) {
   }
 }
 
-// Slicer's segments in shared layers, and the same as older programs wrote them: a layer for each.
+// Slicer's segments in shared layers, and the same in the form of older programs, with one layer
+// for each.
 TEST(Segments, OfBothKindsLieWhereNumpyHasThem) {
   const std::string newer =
       palpate::testing::scanPath("chest_segnrrd/SegmentationOverlapping.seg.nrrd");

@@ -1,4 +1,4 @@
-// Material grids against closed forms, and through files and back.
+// Material grids compared with closed forms, and written to files and read back.
 
 #include "palpate/vdb/material_grid.h"
 
@@ -90,7 +90,7 @@ TEST(MaterialGrid, WhatIsLinearFromVoxelToVoxelIsMetExactly) {
       if (!is_inner) continue;
       ++inside;
       const MaterialMap::Sample s = grid.sample(p);
-      // Floats hold the voxels to 6e-8 of 900.
+      // Floats hold voxels of 900 to 6e-8 of that.
       ASSERT_NEAR(s.value, linear(p), 1e-4);
       ASSERT_LT(glm::length(s.gradient - slope), 1e-4 / 0.5e-3);
       ASSERT_EQ(s.value, grid.value(p));
@@ -113,11 +113,13 @@ TEST(MaterialGrid, IsSmoothWithinItsRangeAndConstantBeyond) {
         Vec3 d(0.0);
         d[a] = h;
         const double slope = (grid.value(p + d) - grid.value(p - d)) / (2.0 * h);
-        // The second derivative of a spline of voxels that differ by up to 700: 1400 / voxel^2.
+        // The second derivative of a spline through voxels that differ by up to 700: 1400 /
+        // voxel^2.
         ASSERT_NEAR(slope, s.gradient[a], 1400.0 / (0.9e-3 * 0.9e-3) * h + 1.0);
       }
     }
-    // Across every face between voxels, and between blocks of eight, value and gradient go on.
+    // Across every face between voxels, and between blocks of eight, value and gradient are
+    // continuous.
     const Vec3 step = image.axes * Vec3(1e-9, 0, 0);
     for (int i = 0; i < 21; ++i) {
       const Vec3 p = image.toWorld(Vec3(i + 0.5, 3.3, 8.2));
@@ -137,7 +139,8 @@ TEST(MaterialGrid, IsSmoothWithinItsRangeAndConstantBeyond) {
 }
 
 TEST(MaterialGrid, ASmoothFunctionIsMetToTheSecondOrder) {
-  // Its coefficients are the voxels, so a quadratic's are off by h^2 / 8 of each second derivative.
+  // The spline's coefficients are the voxels, so that for a quadratic it is off by h^2 / 8 times
+  // each second derivative.
   const auto f = [](const Vec3& p) { return 500.0 + 4e5 * p.x * p.x - 2e5 * p.y * p.y; };
   const Image image = imageOf({31, 31, 9}, f);
   const MaterialGrid grid(image, 0.0);
@@ -156,7 +159,7 @@ TEST(MaterialGrid, FewerBitsKeepWithinTheTolerance) {
     double tolerance;
     int bits;
   };
-  // 700 N/m in 8 bits are steps of 2.7, in 16 bits of 0.011.
+  // A range of 700 N/m gives steps of 2.7 in 8 bits, and of 0.011 in 16 bits.
   for (const Row& row : {Row{2.0, 8}, Row{1.38, 8}, Row{1.3, 16}, Row{0.01, 16}, Row{0.005, 32}}) {
     const MaterialGrid grid(image, row.tolerance);
     const Quantisation& how = grid.info().quantisation;

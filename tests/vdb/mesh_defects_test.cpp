@@ -1,5 +1,5 @@
-// What findDefects() finds: closed forms, known defects, and self-intersections against separating
-// axes in whole numbers.
+// The results of findDefects(): closed forms, known defects, and self-intersections compared with
+// separating axes in integers.
 
 #include "palpate/vdb/mesh_defects.h"
 
@@ -32,7 +32,7 @@ TEST(FindDefects, ASoundMeshHasNone) {
   EXPECT_EQ(d.non_manifold_edges + d.turned_triangles + d.crossings + d.inside_out_parts, 0U);
   EXPECT_EQ(d.parts, 1U);
   EXPECT_EQ(d.hollow_parts, 0U);
-  // Triangles of 5120 lie below the ball by some 1e-3 of its radius.
+  // 5120 triangles are some 1e-3 of the radius below the ball.
   EXPECT_NEAR(d.volume, 4.0 / 3.0 * std::numbers::pi * 1e-6, 0.005 * 4.2e-6);
   EXPECT_NEAR(d.area, 4.0 * std::numbers::pi * 1e-4, 0.005 * 1.26e-3);
   EXPECT_NEAR(d.bounds.size().x, 0.02, 1e-4);
@@ -94,7 +94,7 @@ TEST(FindDefects, PartsWithinOthers) {
   EXPECT_EQ(d.hollow_parts, 1U);
   EXPECT_EQ(d.inside_out_parts, 1U);
   EXPECT_EQ(d.crossings, 0U);
-  // A part that sticks out of another is not within it.
+  // A part that sticks out of another one is not inside it.
   d = findDefects(together(large, ballMesh(Vec3(0.009, 0.0, 0.0), 0.005, 3)));
   EXPECT_NEAR(d.volume, v_large + v_small, 1e-15);
   EXPECT_GT(d.crossings, 0U);
@@ -150,8 +150,8 @@ Point cross(const Point& a, const Point& b) {
 }
 Int dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Whether the hulls of two or three points each have a point in common: no direction of those that
-/// can separate them does. Exact.
+/// Whether the hulls of two or three points each have a point in common: true if none of the
+/// directions that could separate them does. Exact.
 bool hullsMeet(const std::vector<Point>& a, const std::vector<Point>& b) {
   std::vector<Point> edges;
   for (const auto& hull : {a, b}) {
@@ -191,7 +191,7 @@ TEST(TrianglesMeet, AsSeparatingAxesInWholeNumbersSay) {
   int met = 0;
   int asked = 0;
   for (int round = 0; round < 60000; ++round) {
-    // Few places, so that corners on sides, in planes and in line with others are common.
+    // Few places, so that corners often lie on sides, in planes and in line with others.
     const Int size = round % 3 == 0 ? 2 : (round % 3 == 1 ? 4 : 40);
     const Int thick = round % 4 == 0 ? 0 : size;
     const auto any = [&](Int most) {
@@ -216,7 +216,7 @@ TEST(TrianglesMeet, AsSeparatingAxesInWholeNumbersSay) {
     } else {
       if (isFlat(p[0], p[1], p[5])) continue;
       other = {1, 5, 0};
-      // Beyond the common side: the other two sides of either meet, or hold, what lies off it.
+      // They meet beyond the common side only if both lie in one plane, on one side of it.
       const Point n = cross(minus(p[1], p[0]), minus(p[2], p[0]));
       truth =
           dot(n, minus(p[5], p[0])) == 0 && dot(cross(minus(p[1], p[0]), minus(p[5], p[0])), n) > 0;
@@ -229,7 +229,7 @@ TEST(TrianglesMeet, AsSeparatingAxesInWholeNumbersSay) {
     ++asked;
     met += truth ? 1 : 0;
     if (!place) continue;
-    for (int axis = 0; axis < 3; ++axis) {  // within both boxes
+    for (int axis = 0; axis < 3; ++axis) {  // inside both boxes
       ASSERT_GE((*place)[axis],
                 std::min({vertices[one[0]][axis], vertices[one[1]][axis], vertices[one[2]][axis]}) -
                     1e-9);
@@ -248,7 +248,7 @@ TEST(ExactSide, OfPointsAlmostInAPlaneAndInALine) {
   std::mt19937_64 random(5);
   int zero = 0;
   for (int round = 0; round < 20000; ++round) {
-    // 36 bits: products of three differences fit in 127, and not in a long double.
+    // 36 bits: products of three differences fit in 127 bits, but not in a long double.
     std::array<std::array<Int, 3>, 4> p{};
     for (std::size_t n = 0; n < 3; ++n) {
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -281,7 +281,7 @@ TEST(ExactSide, OfPointsAlmostInAPlaneAndInALine) {
 TEST(FindDefects, RealMeshes) {
   const std::string folder = palpate::testing::scanPath("meshes/");
   PALPATE_NEEDS_SCAN(folder);
-  // Parts as the folder's list has them.
+  // The numbers of parts are those in the folder's list.
   const std::pair<const char*, std::size_t> meshes[] = {
       {"liver-smooth.obj", 1}, {"malleus.obj", 1},       {"tooth.obj", 2},
       {"brain_region.stl", 1}, {"brain_region2.stl", 1}, {"footbones.ply", 26}};

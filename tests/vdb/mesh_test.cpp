@@ -104,7 +104,7 @@ std::string asciiPly(const std::string& second_vertex = "255 1 0 0",
          "\n255 0 1 0\n255 0 0 1\n3 0 2 1 0\n3 0 1 3 0\n3 1 2 3 0\n" + last_face + "\n";
 }
 
-/// glTF of the corner, in one node; `node` is what else the node says.
+/// glTF of the corner, in one node; `node` holds further properties of the node.
 std::string gltf(const std::string& node, int last_index = 3) {
   std::string bytes;
   for (const auto& [a, b, c] : kFaces) {
@@ -164,7 +164,7 @@ TEST(ReadMesh, NodesPlaceTheirMeshes) {
   const TempFolder folder;
   expectCorner(folder.file("moved.gltf", gltf(R"(,"scale":[2,2,2],"translation":[10,20,30])")), 2.0,
                Vec3(10, 20, 30));
-  // Mirrored: the triangles must be turned, or the volume would be negative.
+  // Mirrored: the triangles must be reversed, or the volume would be negative.
   const Mesh mesh = readMesh(folder.file("mirror.gltf", gltf(R"(,"scale":[-1,1,1])")), 1.0);
   EXPECT_NEAR(checkMesh(mesh).volume, 1.0 / 6.0, 1e-12);
 }
@@ -199,7 +199,7 @@ TEST(ReadMesh, PolygonsAreCutIntoTriangles) {
   EXPECT_EQ(prism.triangles.size(), 2U * 4U + 6U * 2U);
   EXPECT_TRUE(checkMesh(prism).isClosed());
   EXPECT_DOUBLE_EQ(checkMesh(prism).volume, 10.0);
-  // Every triangle of a cap lies in it: their areas add up to the L's.
+  // Every triangle of a cap lies in it: their areas add up to that of the L.
   double cap = 0.0;
   for (const auto& [a, b, c] : prism.triangles) {
     const Vec3 normal =
@@ -328,7 +328,7 @@ TEST(CheckMesh, CountsWhatIsThere) {
   EXPECT_DOUBLE_EQ(checkMesh(inside_out).volume, -24.0);
   EXPECT_EQ(checkMesh(inside_out).flipped_edges, 0U);
 
-  // Two cubes that share an edge: it has four triangles.
+  // Two cubes that share an edge: that edge has four triangles.
   Mesh touching = cube;
   const Mesh other = boxMesh(Vec3(3.0, 5.0, 3.0), Vec3(2.0, 3.0, 4.0));
   touching = together(cube, other);
@@ -351,8 +351,8 @@ TEST(CheckMesh, CountsWhatIsThere) {
 }
 
 TEST(CheckMesh, VolumeOfABallConverges) {
-  // A polyhedron with its corners on the sphere lacks a share of its volume that falls with the
-  // square of the edge length, so to a quarter with each level.
+  // A polyhedron with its corners on the sphere lacks a share of the volume that is proportional to
+  // the square of the edge length: a quarter with each level.
   const double whole = 4.0 / 3.0 * std::numbers::pi * 1e-6;
   double before = 0.0;
   for (const int levels : {2, 3, 4}) {
@@ -398,7 +398,7 @@ TEST(ReadMesh, ObjLinesGoOnAfterABackslash) {
   EXPECT_EQ(mesh.triangles.size(), 4U);
   EXPECT_TRUE(checkMesh(mesh).isClosed());
   EXPECT_NEAR(checkMesh(mesh).volume, 1.0 / 6.0, 1e-15);
-  // Lines are still counted as they are in the file.
+  // Line numbers still count the lines of the file.
   try {
     (void)readMesh(folder.file("b.obj", "v 0 0 \\\n0\nv 1 0 x\n"), 1.0);
     ADD_FAILURE() << "no error";

@@ -1,4 +1,4 @@
-// MetaImage files made by hand: places, encodings, and what is refused.
+// MetaImage files made by hand: places, encodings, and files that are refused.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -90,13 +90,13 @@ TEST(MetaImage, EveryEncodingGivesTheSameVoxels) {
 TEST(MetaImage, RowsOfTheMatrixAreTheAxes) {
   const TempFolder folder;
   Lines lines = plainHeader();
-  // i runs along +y, j against x, k mirrored and sheared.
+  // i runs along +y, j along -x, k is mirrored and sheared.
   set(lines, "TransformMatrix", "0 1 0 -1 0 0 0.1 0 -1");
   const Image image = readImage(folder.file("a.mha", textOf(lines) + counting(24)));
   // (10, 20, 30) + 1 (0, 1, 0) + 2 * 2 (-1, 0, 0) + 1 * 3 (0.1, 0, -1) = (6.3, 21, 27), LPS.
   EXPECT_LT(apartMm(image.toWorld({1, 2, 1}), Vec3(-6.3, -21, 27) * 1e-3), 1e-9);
   EXPECT_EQ(readImageInfo(image.source).orientation, "PRI");
-  // Left-handed: determinant of (0,-1,0), (2,0,0), (-0.3,0,-3) is negative.
+  // Left-handed: the determinant of (0,-1,0), (2,0,0), (-0.3,0,-3) is negative.
   EXPECT_LT(glm::determinant(image.axes), 0.0);
 }
 

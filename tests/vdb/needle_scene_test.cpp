@@ -1,5 +1,5 @@
-// A needle in the scanned head of data/scenes: its force against the model, with the depths of the
-// brain taken from the grids that are felt, and these held against the image.
+// A needle in the scanned head of data/scenes: its force compared with the model, using the depths
+// of the brain in the grids that are felt, which in turn are compared with the image.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ TEST(NeedleScene, BrainIsCutAndHoldsTheShaft) {
   const RegionId brain = scene->regionNamed("brain");
   const RegionId thalamus = scene->regionNamed("thalamus");
 
-  // [m] along the way, by bisection of what region a point is in.
+  // [m] along the way, by bisection on the region of a point.
   const auto entry_of = [&](RegionId region) {
     double outside = 0.0;
     while (scene->regionAt(from + (outside + kMm) * way) != region) outside += kMm;
@@ -57,13 +57,13 @@ TEST(NeedleScene, BrainIsCutAndHoldsTheShaft) {
       pierced = depth;
       EXPECT_EQ(crossing.how, PortCrossing::How::kPuncture);
       EXPECT_GT(crossing.force, 0.15 - 1e-12);
-      // The wall gives way at once, and cutting and friction stay.
+      // The wall opens at once, while cutting and friction remain.
       EXPECT_LT(glm::length(r.force), last);
       EXPECT_GT(glm::dot(r.force, -way), 0.07);
     }
     last = glm::length(r.force);
-    // The first millimeter is pressed before it is cut (0.05 N / 90 N/m), and slides from 0.15 mm
-    // on.
+    // The first part is pressed before it is cut (0.05 N / 90 N/m), and the shaft slides from 0.15
+    // mm on.
     if (depth > entry + kMm && depth < nucleus) {
       ASSERT_EQ(r.region, brain);
       const double model = 0.05 + (depth - entry) * (1.0 + 10.0 * speed);
@@ -72,13 +72,13 @@ TEST(NeedleScene, BrainIsCutAndHoldsTheShaft) {
     }
   }
   EXPECT_GT(compared, 1000);
-  // 1.2 N/m times how exactly the surface is met, 1e-9 of a grid's size, and then some.
+  // 1.2 N/m times the accuracy of the surface, 1e-9 of a grid's size, with a margin.
   EXPECT_LT(worst, 1e-6);
   EXPECT_GT(pierced, nucleus);
   EXPECT_LT(pierced, nucleus + 0.005);
 
-  // By the image the brain begins where its interpolated value passes 20: within a voxel of 1.5 mm,
-  // and the force with it, by the slope of 1.2 N/m.
+  // By the image, the brain begins where its interpolated value reaches 20: this agrees within a
+  // voxel of 1.5 mm, and the force accordingly, with a slope of 1.2 N/m.
   const Image image = readNifti("/usr/share/mricron/templates/ch2bet.nii.gz");
   double by_image = 0.0;
   while (by_image < end && !(image.interpolate(from + by_image * way) > 20.0)) {

@@ -1,4 +1,4 @@
-// Images that cannot be used: each gives one clear error, and none gives voxels.
+// Images that cannot be used: each gives one clear error, and no voxels.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -132,7 +132,7 @@ TEST(NiftiErrors, FilesThatAreNoImages) {
   expectRefused(writeTemporary("magic2.nii", nii2), "nifti.format", "not a NIfTI");
 }
 
-// Cut after every 37th byte: header, gap, voxels. libnifti would fill up with zeros.
+// Truncated after every 37th byte: header, gap, voxels. libnifti would fill up with zeros.
 TEST(NiftiErrors, PlainFileCutAnywhere) {
   const Bytes whole = bytesOf({});
   for (std::size_t length = 4; length < whole.size(); length += 37) {
@@ -159,7 +159,7 @@ TEST(NiftiErrors, GzipFileCutAnywhere) {
       EXPECT_EQ(error.problem().code, "nifti.truncated") << error.what();
     }
   }
-  // All voxels are there, the checksum behind them is not.
+  // All voxels are there, but the checksum behind them is not.
   for (const long missing : {1L, 4L, 8L}) {
     expectRefused(writeTemporary("tail.nii.gz", Bytes(whole.begin(), whole.end() - missing)),
                   "nifti.truncated", "break off");

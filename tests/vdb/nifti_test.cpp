@@ -1,4 +1,5 @@
-// NIfTI images against nibabel and scipy: where voxels lie, what they hold, what lies between them.
+// NIfTI images compared with nibabel and scipy: places of voxels, their values, and values between
+// them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,8 +50,8 @@ double worstCorner(const std::array<int, 3>& size, const Mat3& axes, const Vec3&
   return worst;
 }
 
-// Affines are float32 in the file; both sides read them into double, so only the qform's square
-// root and products may differ: far below 1e-5 mm.
+// Affines are float32 in the file, and both sides convert them to double, so that only the qform's
+// square root and products can differ: far less than 1e-5 mm.
 void expectAffinesAsNibabel(const std::vector<std::string>& files) {
   ASSERT_FALSE(files.empty());
   const auto affines = test::askPython("affine", files);
@@ -68,8 +69,8 @@ TEST(Nifti, AffinesOfTheSharedScansAreNibabels) {
 }
 
 TEST(Nifti, AffinesOfMricronsTemplatesAreNibabels) {
-  // Most of them that set both forms let them contradict each other (a qform without its offset, a
-  // mirrored axis): just what must not be guessed.
+  // In most files that set both forms, these contradict each other (a qform without its offset, a
+  // mirrored axis), and the reader must not guess.
   std::vector<std::string> agreeing;
   const std::vector<std::string> files = niftiFilesBelow(kMricron);
   const auto conflicts = test::askPython("conflict", files);
@@ -98,7 +99,7 @@ TEST(Nifti, AffinesFromQuaternionsAreNibabels) {
     file.version = 1 + i % 2;
     file.sform_code = 0;
     file.qform_code = 1;
-    // Points of the unit ball; its surface (a half turn) is where tools round differently.
+    // Points of the unit ball; on its surface (a half turn) tools round differently.
     do {
       for (double& q : file.quaternion) q = uniform(random);
     } while (std::hypot(file.quaternion[0], file.quaternion[1], file.quaternion[2]) > 0.99);
@@ -131,12 +132,12 @@ void expectInterpolatedAsScipyDoes(const std::string& path) {
   ASSERT_EQ(expected.size(), points.size());
   double brightest = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    // Same formula, gray values up to some thousand: round-off of the index (1e-13) times the
-    // steepest step.
+    // The same formula, with gray values up to some thousand: round-off of the index (1e-13) times
+    // the steepest step.
     EXPECT_NEAR(image.interpolate(points[i]), expected[i].at(0), 1e-8) << i;
     brightest = std::max(brightest, expected[i][0]);
   }
-  EXPECT_GT(brightest, 50.0);  // not a comparison of background with background
+  EXPECT_GT(brightest, 50.0);  // this is not a comparison of background only
 }
 
 TEST(Nifti, InterpolatesAMadeLimbAsScipyDoes) {
@@ -154,7 +155,7 @@ TEST(Nifti, InterpolatesAnObliqueScanAsScipyDoes) {
 TEST(Nifti, InterpolatesUpToTheOutermostCentersAndNotBeyond) {
   const Image image = readNifti(writeTemporary("a.nii", bytesOf({})));
   const Vec3 last(3, 4, 5);
-  // Exact but for the round-off of the inverse affine.
+  // Exact up to the round-off of the inverse affine.
   EXPECT_NEAR(image.interpolate(image.toWorld(Vec3(0.0))), image.at(0, 0, 0), 1e-12);
   EXPECT_NEAR(image.interpolate(image.toWorld(last)), image.at(3, 4, 5), 1e-12);
   EXPECT_NEAR(image.interpolate(image.toWorld(Vec3(0.5, 0, 5))),
@@ -228,7 +229,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& c) { return std::string(c.param.name); });
 
 TEST(Nifti, ScalesSpacingAndOriginByTheUnit) {
-  // 2 units of spacing, first voxel at (-3, -4, -5) units.
+  // A spacing of 2 units, with the first voxel at (-3, -4, -5) units.
   for (const auto& [code, meters] : {std::pair{1, 1.0}, {2, 1e-3}, {3, 1e-6}, {0, 1e-3}}) {
     NiftiFile file;
     file.units = code;
@@ -342,7 +343,7 @@ TEST(Nifti, OfFourDimensionsAFrameIsChosen) {
         const Image image = readImage(path, options);
         EXPECT_EQ(image.size, (std::array{4, 5, 6}));
         EXPECT_EQ(image.at(3, 4, 5), static_cast<float>(120 * frame + 119));
-        // ITK makes the direction an identity here.
+        // ITK replaces the direction by an identity here.
         EXPECT_LT(glm::length(image.origin * 1e3 - Vec3(-3, -4, -5)), 1e-9);
       }
       options.frame = 3;
@@ -377,7 +378,7 @@ TEST(Nifti, NamesOfLabelsComeOutOfTheExtension) {
       EXPECT_TRUE(readImageInfo(path).is_labels);
     }
   }
-  file.extension_code = 6;  // of another's
+  file.extension_code = 6;  // an extension of another kind
   EXPECT_TRUE(readImage(writeTemporary("other.nii", bytesOf(file))).labels.names.empty());
   file.extension_code = 0;
   file.extension = table + "<Label Key=\"3\">other</Label></LabelTable>";

@@ -82,7 +82,7 @@ void putValue(Writer& out, std::size_t at, int datatype, double value) {
     case 64:
       return out.put(at, value);
     default:
-      return;  // complex and color: zeros will do
+      return;  // complex and color: zeros suffice
   }
 }
 
@@ -141,7 +141,7 @@ void putHeader2(Writer& out, const NiftiFile& f, double offset) {
 }  // namespace
 
 Bytes bytesOf(const NiftiFile& f) {
-  // An extension is made of its size, its code and its text, filled up to 16 bytes.
+  // An extension consists of its size, its code and its text, padded to a multiple of 16 bytes.
   const std::size_t extended = f.extension.empty() ? 0 : (8 + f.extension.size() + 15) / 16 * 16;
   const std::size_t plain = f.version == 1 ? 352 : 544;
   const std::size_t header = plain + extended;

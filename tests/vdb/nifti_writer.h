@@ -1,6 +1,6 @@
 #pragma once
-/// NIfTI files of any kind, good and bad, for tests. Written by hand from the published header
-/// layout, so that the reader is not tested against the library it uses.
+/// NIfTI files of any kind, good and bad, for tests. Written according to the published header
+/// layout, so that the reader is not tested with the library that it uses.
 
 #include <array>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct NiftiFile {
   std::array<double, 4> pixdim = {1, 2, 2, 2};  ///< qfac, then the spacings
   int units = 2;                                ///< mm
   int intent = 0;
-  double data_offset = 0;      ///< 0: right behind the header and the extension
+  double data_offset = 0;      ///< 0: directly behind the header and the extension
   std::string extension = {};  ///< its text, if there is one
   int extension_code = 0;
   std::string magic = {};  ///< empty: single file
@@ -36,8 +36,8 @@ using Bytes = std::vector<unsigned char>;
 [[nodiscard]] Bytes bytesOf(const NiftiFile& file);
 [[nodiscard]] Bytes gzipped(const Bytes& content);
 
-/// Writes `content` to `name` in a folder that goes when the tests end; its path. A name is used
-/// again and again.
+/// Writes `content` to `name` in a folder that is removed when the tests end; returns its path. A
+/// later call with the same name replaces the file.
 std::string writeTemporary(const std::string& name, const Bytes& content);
 std::string writeTemporary(const std::string& name, const std::string& content);
 

@@ -1,4 +1,4 @@
-// NRRD files made by hand: places, encodings, segments, and what is refused.
+// NRRD files made by hand: places, encodings, segments, and files that are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,7 +92,7 @@ TEST(Nrrd, SpacesUnitsShearsAndMirrorsKeepTheirPlace) {
     const char* space;
     const char* directions;
     const char* units;
-    Vec3 expected_mm;  ///< of voxel (1, 2, 1), RAS
+    Vec3 expected_mm;  ///< place of voxel (1, 2, 1), RAS
     const char* orientation;
   };
   // Origin (10, 20, 30) + (1, 0.5, 0) + 2 (0, -2, 0.25) + (0.1, 0, 3) = (11.1, 16.5, 33.5).
@@ -112,7 +112,7 @@ TEST(Nrrd, SpacesUnitsShearsAndMirrorsKeepTheirPlace) {
     set(lines, "space directions", c.directions);
     set(lines, "space units", c.units);
     const Image image = readImage(folder.file("a.nrrd", textOf(lines) + counting(24)));
-    // Decimal numbers in doubles.
+    // Decimal numbers converted to doubles.
     EXPECT_LT(apartMm(image.toWorld({1, 2, 1}), c.expected_mm * 1e-3), 1e-4 * 1e-3) << c.space;
     EXPECT_EQ(readImageInfo(image.source).orientation, c.orientation) << c.space;
   }
@@ -142,7 +142,7 @@ TEST(Nrrd, WhatTheHeaderLeavesOpenIsAskedFor) {
   EXPECT_LT(apartMm(readImage(odd, options).toWorld({1, 1, 1}), Vec3(-11, -22, 33) * 1e-3), 1e-9);
   options.space = Space::kRas;
   EXPECT_LT(apartMm(readImage(odd, options).toWorld({1, 1, 1}), Vec3(11, 22, 33) * 1e-3), 1e-9);
-  // What is said is not overruled.
+  // A statement in the file is not overruled.
   const std::string said = folder.file("said.nrrd", textOf(plainHeader()) + counting(24));
   EXPECT_LT(apartMm(readImage(said, options).origin, Vec3(-10, -20, 30) * 1e-3), 1e-9);
 
@@ -151,7 +151,7 @@ TEST(Nrrd, WhatTheHeaderLeavesOpenIsAskedFor) {
   const Image image = readImage(folder.file("origin.nrrd", textOf(lines) + counting(24)));
   ASSERT_EQ(image.notes.size(), 1U);
   EXPECT_NE(image.notes[0].find("no space origin"), std::string::npos);
-  // An option that a format has no use for is a slip.
+  // An option that a format does not use is a mistake.
   options = {};
   options.affine = AffineChoice::kQform;
   EXPECT_EQ(errorOf([&] { (void)readImage(said, options); }).problem().code, "image.option");
@@ -288,7 +288,7 @@ TEST(NrrdCut, AnywhereIsRefused) {
       EXPECT_THROW((void)readImage(file), Error) << length << " of " << whole.size();
     }
     if (!gzip) continue;
-    // ITK takes what comes before the checksum, whatever that says.
+    // ITK accepts the data before the checksum, whatever the checksum is.
     for (std::size_t back = 1; back <= 8; ++back) {
       std::string bad = whole;
       bad[bad.size() - back] = static_cast<char>(bad[bad.size() - back] ^ 0x40);
@@ -296,14 +296,14 @@ TEST(NrrdCut, AnywhereIsRefused) {
       EXPECT_EQ(errorOf([&] { (void)readImage(file); }).problem().code, "nrrd.checksum");
     }
   }
-  // More than the header asks for is a header that is wrong.
+  // If there are more voxels than the header states, the header is wrong.
   Lines lines = plainHeader();
   set(lines, "encoding", "gzip");
   const std::string more = folder.file("more.nrrd", textOf(lines) + zipped(counting(30)));
   EXPECT_EQ(errorOf([&] { (void)readImage(more); }).problem().code, "nrrd.size");
 }
 
-/// Two layers of 4 x 3 x 2 bytes in turn.
+/// Two interleaved layers of 4 x 3 x 2 bytes.
 std::string layers(const std::array<int, 24>& first, const std::array<int, 24>& second) {
   std::string bytes;
   for (std::size_t i = 0; i < 24; ++i) {
@@ -330,7 +330,7 @@ Lines segmentHeader() {
   return lines;
 }
 
-// Not the later layer but the later segment of the file has what both have.
+// Voxels in two segments go to the later segment of the file, not to the later layer.
 TEST(NrrdSegments, TheLaterOfTheFileHasWhatTwoShare) {
   const TempFolder folder;
   std::array<int, 24> first{}, second{};
@@ -380,7 +380,7 @@ TEST(NrrdSegments, WhatContradictsItselfIsRefused) {
   EXPECT_EQ(code_of([](Lines& l) { set(l, "Segment0_LabelValue", "x"); }), "nrrd.segment");
   EXPECT_EQ(code_of([](Lines& l) { set(l, "Segment1_Color", "2 0 0"); }), "nrrd.segment");
   EXPECT_EQ(code_of([](Lines& l) { set(l, "Segment1_LabelValue", "7"); }), "nrrd.segment");
-  // Slicer saves an empty segmentation as one voxel.
+  // Slicer saves an empty segmentation as a single voxel.
   EXPECT_EQ(code_of([](Lines& l) { set(l, "sizes", "2 1 1 1"); }), "nrrd.dimensions");
 }
 

@@ -1,5 +1,4 @@
-// Meshes of few flat faces: felt as the solid between their planes, with edges and corners as they
-// are.
+// Meshes of few flat faces: felt as the solid between their planes, with exact edges and corners.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +25,7 @@ using palpate::test::sceneOfSolid;
 
 constexpr double kMm = 1e-3;
 
-/// Polygons, corners from 0, as triangles.
+/// Splits polygons, whose corners count from 0, into triangles.
 Mesh meshOf(const std::vector<Vec3>& vertices, const std::vector<std::vector<int>>& polygons) {
   std::string text;
   for (const Vec3& v : vertices) {
@@ -43,7 +42,7 @@ Mesh meshOf(const std::vector<Vec3>& vertices, const std::vector<std::vector<int
   return readMesh(folder.file("polygons.obj", text), 1.0);
 }
 
-/// Corners counterclockwise, between two heights.
+/// A prism between two heights; corners are counterclockwise.
 Mesh prism(const std::vector<glm::dvec2>& corners, double low, double high) {
   std::vector<Vec3> vertices;
   const int n = static_cast<int>(corners.size());
@@ -117,7 +116,7 @@ Mesh cubeWithoutACorner() {
                     {at(1, 1, 1), at(2, 1, 1), at(2, 2, 1), at(1, 2, 1)}});
 }
 
-/// Where a ray from p along an odd direction has passed a closed mesh an odd number of times.
+/// Whether a ray from p in an irregular direction crosses a closed mesh an odd number of times.
 bool isInside(const Mesh& mesh, const Vec3& p) {
   const Vec3 way = glm::normalize(Vec3(0.321, 0.527, 0.786));
   int walls = 0;
@@ -135,8 +134,8 @@ bool isInside(const Mesh& mesh, const Vec3& p) {
   return walls % 2 == 1;
 }
 
-/// The field is zero on the mesh, has its inside, and never says more than the distance (by a slope
-/// of 1).
+/// The field is zero on the mesh, has the mesh's inside, and never exceeds the distance (its slope
+/// is 1).
 void expectSolid(const Mesh& mesh) {
   const FieldPtr field = polyhedronField(mesh);
   ASSERT_TRUE(field);
@@ -189,7 +188,7 @@ TEST(Polyhedron, InsideOutIsTheSameSolid) {
 }
 
 TEST(Polyhedron, FacesOfManyTrianglesAreOneFace) {
-  // Each triangle in four, three times, in floats: as an STL file has them.
+  // Each triangle is divided into four, three times, in floats: as in an STL file.
   Mesh mesh = boxMesh(Vec3(1, 2, 3) * kMm, Vec3(20 * kMm));
   const Mat3 turn = rotationAbout(Vec3(1, 2, 3), 0.7);
   for (Vec3& v : mesh.vertices) v = turn * v;
@@ -208,7 +207,7 @@ TEST(Polyhedron, FacesOfManyTrianglesAreOneFace) {
   for (Vec3& v : mesh.vertices) v = Vec3(glm::vec3(v));
   const FieldPtr field = polyhedronField(mesh, 6);
   ASSERT_TRUE(field);
-  // A float of 30 mm is off by 2e-9.
+  // The rounding of a float of 30 mm is 2e-9.
   EXPECT_NEAR(field->value(turn * (Vec3(11, 2, 3) * kMm)), 0.0, 1e-8);
 }
 
@@ -220,11 +219,11 @@ TEST(Polyhedron, WhatIsNoneIsLeftToTheGrid) {
   const Mesh hollow =
       together(boxMesh(Vec3(0.0), Vec3(20 * kMm)), boxMesh(Vec3(0.0), Vec3(10 * kMm)), true);
   EXPECT_FALSE(polyhedronField(hollow));
-  EXPECT_FALSE(polyhedronField(star(), 11));  // it has twelve faces
+  EXPECT_FALSE(polyhedronField(star(), 11));  // the star has twelve faces
 }
 
-/// From face to face, and now and then out: all ticks beside the oracle, which projects onto the
-/// true solid.
+/// From face to face, and from time to time out: all ticks are compared with the oracle, which
+/// projects onto the true solid.
 void feelsTrue(const Mesh& mesh, bool from_within, const Vec3& free, double reach, int seed) {
   const FieldPtr field = polyhedronField(mesh);
   ASSERT_TRUE(field);
@@ -234,7 +233,7 @@ void feelsTrue(const Mesh& mesh, bool from_within, const Vec3& free, double reac
 }
 
 TEST(PolyhedronContact, CubeFeelsLikeTheBox) {
-  // The same hand on both: not a tick differs by more than rounding.
+  // The same hand on both: no tick differs by more than rounding.
   const Vec3 size(60 * kMm, 40 * kMm, 20 * kMm);
   const FieldPtr field = polyhedronField(boxMesh(Vec3(0.0), size));
   ASSERT_TRUE(field);
@@ -276,7 +275,7 @@ TEST(PolyhedronContact, AnEdgeIsFeltWhereItIs) {
   const FieldPtr bricks = gridField(bakeMesh(mesh, voxels(0.5 * kMm)));
   const FieldPtr exact = polyhedronField(mesh);
   ASSERT_TRUE(exact);
-  // On the edge itself, and a tenth of a voxel out of each face beside it.
+  // On the edge itself, and a tenth of a voxel outside each adjacent face.
   double rounded = 0.0;
   double turned = 0.0;
   for (int n = 0; n <= 100; ++n) {
@@ -293,7 +292,7 @@ TEST(PolyhedronContact, AnEdgeIsFeltWhereItIs) {
   }
   std::printf("an edge at voxels of 0.5 mm: bricks are off by %.3f mm and %.0f degrees\n",
               rounded * 1e3, turned);
-  EXPECT_GT(turned, 10.0);  // what it is there for
+  EXPECT_GT(turned, 10.0);  // the path must turn the force this much, or the test shows nothing
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The contents of bricks, voxel by voxel, against the formula of prefilter.h as it stands there.
+// The contents of bricks, voxel by voxel, compared with the formula in prefilter.h.
 
 #include "brick/prefilter.h"
 
@@ -18,7 +18,7 @@ using palpate::test::Random;
 constexpr float kPlateau = 2.7F;
 constexpr double kUnitsPerVoxel = 0.7;
 
-/// Voxels as a brick names them: from -3 to 11.
+/// Voxels by their coordinates in a brick: from -3 to 11.
 class Voxels {
  public:
   explicit Voxels(Neighborhood& of) : of_(of) {}
@@ -36,7 +36,7 @@ class Voxels {
   Neighborhood& of_;
 };
 
-/// Values like a distance's, and all known but every `hole`-th voxel.
+/// Values like those of a distance; all voxels are known except every `hole`-th one.
 std::unique_ptr<Neighborhood> randomNeighborhood(Random& random, double hole) {
   auto made = std::make_unique<Neighborhood>();
   Voxels voxels(*made);
@@ -51,7 +51,7 @@ std::unique_ptr<Neighborhood> randomNeighborhood(Random& random, double hole) {
   return made;
 }
 
-/// What a voxel's coefficient comes to, and whether it is known.
+/// A voxel's coefficient, and whether it is known.
 struct Coefficient {
   double value = 0.0;
   bool is_known = false;
@@ -90,7 +90,7 @@ class Reference {
   }
 
  private:
-  /// All that so many steps along the axes lead to.
+  /// Whether all voxels within that many steps along the axes are known.
   [[nodiscard]] bool isKnownWithin(int steps, int x, int y, int z) {
     for (int i = -steps; i <= steps; ++i) {
       for (int j = -steps; j <= steps; ++j) {

@@ -33,7 +33,7 @@ std::vector<std::vector<double>> askScript(const std::string& script, const std:
     auto& row = rows.emplace_back();
     const char* at = text.c_str();
     for (char* end = nullptr;; at = end) {
-      const double value = std::strtod(at, &end);  // reads "nan" and "inf" too
+      const double value = std::strtod(at, &end);  // parses "nan" and "inf" too
       if (end == at) break;
       row.push_back(value);
     }

@@ -6,13 +6,14 @@
 
 namespace palpate::vdb::test {
 
-/// The numbers that `script command arguments...` prints, a row for each line; `script` is below
+/// The numbers that `script command arguments...` prints, one row for each line; `script` is
+/// relative to tests.
+/// @throws std::runtime_error if it fails; python3-nibabel and python3-scipy are needed for the
 /// tests.
-/// @throws std::runtime_error if it fails; python3-nibabel and python3-scipy are test dependencies.
 [[nodiscard]] std::vector<std::vector<double>> askScript(const std::string& script,
                                                          const std::string& command,
                                                          const std::vector<std::string>& arguments);
-/// The same of vdb/nifti_oracle.py.
+/// The same with vdb/nifti_oracle.py.
 [[nodiscard]] std::vector<std::vector<double>> askPython(const std::string& command,
                                                          const std::vector<std::string>& arguments);
 

@@ -1,5 +1,5 @@
-// Random constructive solid geometry of which some leaves are grids: at every tick the proxy is
-// where an oracle comes to rest that reads the same fields.
+// Random constructive solid geometry in which some leaves are grids: at every tick the proxy is
+// where an oracle that reads the same fields comes to rest.
 //
 // One scene by its number: PALPATE_CSG_FIRST=14 PALPATE_CSG_SCENES=1; more ticks:
 // PALPATE_CSG_CONTACTS=300000.
@@ -26,14 +26,14 @@ using palpate::test::RandomSceneOptions;
 using testing::Fault;
 
 constexpr double kVoxel = 0.5e-3;  // [m]
-constexpr double kBand = 12.0;     // [voxels] twice as far as the hand goes from the proxy
+constexpr double kBand = 12.0;     // [voxels] twice the distance of the hand from the proxy
 
 long numberFrom(const char* name, long otherwise) {
   const char* text = std::getenv(name);
   return text != nullptr ? std::atol(text) : otherwise;
 }
 
-/// Replaces leaves of a tree by grids of them.
+/// Replaces leaves of a tree by grids.
 class LeafBaker {
  public:
   explicit LeafBaker(std::uint64_t seed) : random_(seed * 2 + 5) {}
@@ -55,7 +55,7 @@ class LeafBaker {
       case Kind::kTransform:
         return place(operands.front(), structure.pose);
       case Kind::kFaces:
-        return field;  // what has edges stays as it is
+        return field;  // a leaf with edges stays as it is
       case Kind::kLeaf:
         break;
     }
@@ -65,7 +65,7 @@ class LeafBaker {
   [[nodiscard]] int grids() const { return grids_; }
 
  private:
-  /// A leaf that has no end, or that a grid cannot hold, stays analytic.
+  /// A leaf that is unbounded, or that a grid cannot hold, stays analytic.
   FieldPtr grid(const FieldPtr& leaf) {
     const Box3 bounds = leaf->bounds();
     if (!isFinite(bounds.lo) || !isFinite(bounds.hi)) return leaf;
@@ -93,8 +93,7 @@ TEST(RandomCsgBaked, TheProxyIsWhereTheOracleIsThatReadsTheSameGrids) {
   const int in_each = slow ? 1500 : 150;
   RandomSceneOptions options;
   options.deepest = 4;
-  options.black_box_creases =
-      false;  // a kink within a leaf is one thing in the leaf and another in its grid
+  options.black_box_creases = false;  // a kink within a leaf differs between the leaf and its grid
   CsgCounts counts;
   int grids = 0;
   for (std::uint64_t number = first; counts.contacts < wanted && counts.scenes < most_scenes;
@@ -121,7 +120,7 @@ TEST(RandomCsgBaked, TheProxyIsWhereTheOracleIsThatReadsTheSameGrids) {
                             Fault::kContact, Fault::kStep, Fault::kFrozen}) {
     EXPECT_EQ(counts.of(never), 0) << nameOf(never);
   }
-  // As of the trees without grids: 99.99 % at the minimum, and little that passes unseen.
+  // As for the trees without grids: 99.99 % at the minimum, and few ticks that cannot be judged.
   EXPECT_LE(counts.of(Fault::kPlace), 1 + counts.contacts / 10'000);
   EXPECT_LE(counts.ambiguous, 5 + counts.contacts / 1'000);
   EXPECT_LE(counts.unjudged, 5 + counts.contacts / 1'000);

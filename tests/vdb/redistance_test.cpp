@@ -1,4 +1,4 @@
-// Distances from voxels: to the nearest one on the other side, and to the surface of the spline
+// Distances from voxels: to the nearest voxel on the other side, and to the surface of the spline
 // through a band.
 #include "scan/redistance.h"
 
@@ -50,8 +50,8 @@ Mask maskOfOnes(const Image& image, int margin) {
       image, [](float value) { return value > 0.5F; }, margin);
 }
 
-// Every voxel of every block, against all voxels within reach, with spacings that make ties and
-// others.
+// Every voxel of every block, compared with all voxels within reach, for spacings with and without
+// ties.
 TEST(Opposite, FindsTheNearestVoxelOnTheOtherSide) {
   constexpr int kReach = Opposite::kReach;
   for (const Vec3 spacing : {Vec3(1.0), Vec3(1.0, 1.5, 3.0), Vec3(2.0, 1.0, 1.0)}) {
@@ -88,7 +88,7 @@ TEST(Opposite, FindsTheNearestVoxelOnTheOtherSide) {
           if (!any || found.square[place] >= Opposite::kNone) {
             EXPECT_EQ(least, kInfinity);
           } else {
-            // Small whole and half numbers: floats hold their squares exactly.
+            // Small integers and halves: floats hold their squares exactly.
             EXPECT_EQ(static_cast<double>(found.square[place]), least);
             EXPECT_EQ(static_cast<double>(found.voxels[place]), voxels);
           }
@@ -114,8 +114,9 @@ struct Made {
         grid(bakeSpline(spline, band, mask, image, bake, {})) {}
 };
 
-/// Where lines between lattice neighbors on two sides pass through the surface, by bisection on the
-/// baked grid's own source, the spline: found as closest points of points that lie on it nearly.
+/// Points where lines between lattice neighbors on two sides cross the surface, found by bisection
+/// on the spline from which the grid was baked: each is a closest point of a point that is nearly
+/// on the surface.
 std::vector<Vec3> surfacePoints(const Made& made, int per_edge) {
   std::vector<Vec3> points;
   const auto [nx, ny, nz] = made.image.size;
@@ -167,25 +168,26 @@ TEST(Redistance, IsTheDistanceToTheSurfaceOfTheSpline) {
           start = q;
         }
       }
-      // Never further than a point that is on the surface; and no nearer than the closest one
-      // around that, but for where another dale of the surface is deeper.
+      // The value is never larger than the distance to a known point of the surface; and no smaller
+      // than that to the closest one near it, except where another fold of the surface is deeper.
       beyond += std::abs(value) > nearest + 0.02 * voxel ? 1 : 0;
       const auto foot = made.spline.foot(p, start);
-      // By the surface voxels move a little, so that the spline through the grid fits.
+      // Near the surface voxels are shifted a little, so that the spline through the grid passes
+      // through it.
       const double tolerance = (std::abs(value) < 1.6 * voxel ? 0.3 : 0.05) * voxel;
       far += !foot || std::abs(std::abs(foot->distance) - std::abs(value)) > tolerance ? 1 : 0;
     }
     std::printf("%d points, %d beyond, %d far\n", seen, beyond, far);
     EXPECT_LT(beyond, seen / 200);
     EXPECT_GT(seen, 2000);
-    // Newton's method finds nothing beside creases, and another dale than the grid's where two are
-    // as near.
+    // Newton's method fails beside creases, and finds another fold than the grid where two are
+    // equally near.
     EXPECT_LT(far, seen / 200);
   }
 }
 
-// Against all neighbors one by one, where a third of the voxels have no point, and blocks are
-// missing.
+// Compared with a loop over all neighbors, where a third of the voxels have no point, and blocks
+// are missing.
 TEST(NearestFeet, AreThoseOfTheVoxelsAround) {
   const Mat3 axes(Vec3(1.0, 0.1, 0.0), Vec3(0.0, 1.2, -0.2), Vec3(0.3, 0.0, 3.0));
   std::mt19937 random(11);
@@ -222,15 +224,15 @@ TEST(NearestFeet, AreThoseOfTheVoxelsAround) {
       foot = there;
     }
     const auto place = static_cast<std::size_t>(n);
-    // Floats, and random: no two are as near as that.
+    // Random floats: no two are that near to each other.
     ASSERT_LT(least, kInfinity);
     EXPECT_NEAR(std::sqrt(static_cast<double>(nearest.square(place))), least, 1e-5);
     EXPECT_LT(glm::length(nearest.foot(place) - foot), 1e-5);
   }
 }
 
-// Also where every voxel is another piece: signs are those of the voxels, and values change no
-// faster than the way.
+// Even where every voxel is a separate piece: signs are those of the voxels, and values change no
+// faster than distances do.
 TEST(Redistance, HasTheSignsOfTheVoxelsAndIsADistance) {
   for (unsigned run = 0; run < 6; ++run) {
     BakeOptions bake;

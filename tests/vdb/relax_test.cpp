@@ -1,5 +1,5 @@
-// The inner loops that smooth masks: against the energy's own derivative, and one kind of processor
-// against the other.
+// The inner loops that smooth masks: compared with the derivative of the energy, and one
+// instruction set with the other.
 #include "scan/relax.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ namespace {
 using Values = std::array<float, 512>;
 const RelaxWeights kWeights = {{1.0F, 0.2F, 0.012F}, {0.5F, 2.0F, 0.7F}};
 
-/// Random values, of which a share does not count; row 8 x + y has a bit if a voxel of it counts.
+/// Random values, some of which do not count; the bit of row 8 x + y is set if one of its voxels
+/// counts.
 struct Made {
   Patch patch;
   std::uint64_t rows = 0;
@@ -41,7 +42,7 @@ struct Made {
   }
 };
 
-/// Half the derivative by one voxel of the sum of weighted squares, square by square.
+/// Half the derivative of the weighted sum of squares by one voxel, computed square by square.
 double forceAt(const Patch& patch, int x, int y, int z) {
   const std::array<int, 3> at = {x, y, z};
   const auto value = [&](const std::array<int, 3>& p) {
@@ -88,7 +89,7 @@ TEST(RelaxKernels, TheForceIsTheDerivativeOfTheEnergy) {
       const int x = n >> 6, y = n >> 3 & 7, z = n & 7;
       const auto place = static_cast<std::size_t>(n);
       if ((made.rows >> (n >> 3) & 1U) == 0) {
-        EXPECT_EQ(force[place], 0.0F);  // untouched
+        EXPECT_EQ(force[place], 0.0F);  // unchanged
         continue;
       }
       if (std::isnan(made.patch.values[Patch::at(x, y, z)])) continue;
@@ -100,7 +101,7 @@ TEST(RelaxKernels, TheForceIsTheDerivativeOfTheEnergy) {
   }
 }
 
-// Those that this processor runs, beside the plain ones.
+// The variant for this processor, compared with the plain one.
 TEST(RelaxKernels, AllKindsGiveTheSameBits) {
   std::mt19937 random(8);
   std::uniform_real_distribution<float> value(-1.0F, 1.0F);

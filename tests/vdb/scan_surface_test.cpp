@@ -1,4 +1,4 @@
-// Surfaces out of thresholds and labels: where they lie, which way they face, what they keep.
+// Surfaces from thresholds and labels: their place and orientation, and the parts that they keep.
 #include "palpate/vdb/scan_surface.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kMm = 1e-3;
 
-/// n^3 voxels of `axes`, valued by their place in voxels.
+/// An image of `size` voxels with `axes`; the value is a function of the voxel's indices.
 Image imageOf(std::array<int, 3> size, const Mat3& axes, const Vec3& origin,
               const std::function<double(const Vec3&)>& value) {
   Image image;
@@ -41,7 +41,7 @@ Image cubeImage(int n, const std::function<double(const Vec3&)>& value) {
   return imageOf({n, n, n}, Mat3(kMm), Vec3(0.0), value);
 }
 
-// Trilinear: a flat wall is exact to rounding, however near the next bend is.
+// Trilinear sampling: a flat wall is exact to rounding, however near the next edge is.
 FieldPtr thresholdField(const Image& image, ThresholdOptions options) {
   return gridField(surfaceFromThreshold(image, options, {}), Sampler::kAccessor);
 }
@@ -50,8 +50,8 @@ FieldPtr labelField(const Image& image, std::vector<int> values) {
   return gridField(surfaceFromLabels(image, {.values = std::move(values)}, {}), Sampler::kAccessor);
 }
 
-/// Enclosed volume [m^3]: a Heaviside as wide as a sample step, over the field's box. Where the
-/// surface is smooth on that scale its error is of second order.
+/// Enclosed volume [m^3]: with a smooth step as wide as the sampling, over the field's box. Where
+/// the surface is smooth on that scale the error is of second order.
 double volumeOf(const Field& field, double step) {
   const Box3 box = field.bounds().grownBy(2.0 * step);
   double sum = 0.0;
@@ -66,8 +66,8 @@ double volumeOf(const Field& field, double step) {
 }
 
 struct BallErrors {
-  double bias = 0.0;  ///< [m] mean of value on the true sphere; positive: the baked ball is smaller
-  double rms = 0.0;   ///< [m]
+  double bias = 0.0;    ///< [m] mean value on the true sphere; positive: the baked ball is smaller
+  double rms = 0.0;     ///< [m]
   double normal = 0.0;  ///< [degrees] RMS
 };
 
@@ -89,7 +89,7 @@ BallErrors errorsOnSphere(const Field& field, const Vec3& center, double radius)
   return errors;
 }
 
-/// Oblique, anisotropic and left-handed: 0.8 x 1.1 x 1.6 mm, turned about (1, 2, 3), mirrored.
+/// Oblique, anisotropic and left-handed: 0.8 x 1.1 x 1.6 mm, rotated about (1, 2, 3), mirrored.
 Mat3 awkwardAxes() {
   Mat3 axes = rotationAbout(Vec3(1, 2, 3), 0.7);
   axes[0] *= -0.8 * kMm;
@@ -98,7 +98,7 @@ Mat3 awkwardAxes() {
   return axes;
 }
 
-// A ball through an awkward affine, as an intensity with its distance and as bare labels. Spacings
+// A ball with an awkward affine, once with its distance as intensity and once as labels. Spacings
 // are 0.04 to 0.08 of the radius.
 TEST(ScanSurface, BallThroughAnAwkwardAffine) {
   const Mat3 axes = awkwardAxes();
@@ -124,17 +124,17 @@ TEST(ScanSurface, BallThroughAnAwkwardAffine) {
       "  threshold: bias %+.3f mm, rms %.3f mm, normal %.2f degrees\n"
       "  labels:    bias %+.3f mm, rms %.3f mm, normal %.2f degrees\n",
       g.bias / kMm, g.rms / kMm, g.normal, l.bias / kMm, l.rms / kMm, l.normal);
-  // Chords of triangles as long as a voxel's diagonal (d = 2.1 mm) lie up to d^2 / (8 R) = 0.028 mm
-  // too deep, and a linear interpolant of the distance (step h = 0.8 mm) h^2 / (4 R) = 0.008 mm
-  // deeper still; facets lean up to d / (2 R) = 3 degrees against the sphere, 1.5 in the mean.
+  // Chords of triangles as long as a voxel's diagonal (d = 2.1 mm) are up to d^2 / (8 R) = 0.028 mm
+  // too deep, and a linear interpolant of the distance (step h = 0.8 mm) adds h^2 / (4 R) = 0.008
+  // mm. Facets are tilted by up to d / (2 R) = 3 degrees against the sphere, 1.5 on average.
   EXPECT_LT(std::abs(g.bias), 0.036 * kMm);
   EXPECT_LT(g.rms, 0.04 * kMm);
   EXPECT_LT(g.normal, 1.5);
-  // Labels know the sphere only to a voxel: measured, with a margin of a fifth.
+  // Labels tell the sphere only to a voxel: measured errors, with a margin of a fifth.
   EXPECT_LT(std::abs(l.bias), 0.07 * kMm);
   EXPECT_LT(l.rms, 0.12 * kMm);
   EXPECT_LT(l.normal, 5.0);
-  // Inside is in.
+  // The inside is negative.
   EXPECT_LT(from_gray->value(center), 0.0);
   EXPECT_LT(from_label->value(center), 0.0);
 }
@@ -163,8 +163,8 @@ TEST(ScanSurface, IsClosedHalfAVoxelBeyondTheImagesBorder) {
         EXPECT_NEAR(field->sample(wall).gradient[axis], side, 1e-5);
       }
     }
-    // All voxels, less what the grid rounds off along the twelve edges (144 voxels): less than a
-    // quarter of a voxel's face.
+    // All voxels, minus what the grid rounds off along the twelve edges (144 voxels): less than a
+    // quarter of a voxel's face for each voxel of edge.
     const double volume = volumeOf(*field, kMm);
     EXPECT_LT(volume, 10 * 12 * 14 * 8e-9);
     EXPECT_GT(volume, (10 * 12 * 14 - 36) * 8e-9);
@@ -187,7 +187,7 @@ TEST(ScanSurface, KeepsTheLargestPieceOrAll) {
   EXPECT_LT(all->value(Vec3(31, 31, 31) * kMm), 0.0);
 }
 
-// A thick shell; with `duct` an air path leads into its cavity.
+// A thick shell; with `duct` an air passage leads into its cavity.
 Image shell(bool duct) {
   return cubeImage(44, [duct](const Vec3& p) {
     const double wall = std::min(ball(p, Vec3(21.5), 18), -ball(p, Vec3(21.5), 9));
@@ -204,13 +204,14 @@ TEST(ScanSurface, FillsEnclosedCavitiesOnRequestAndLeavesOpenOnes) {
   EXPECT_LT(hollow->value(in_wall), 0.0);
   const FieldPtr filled = thresholdField(shell(false), {.above = 0, .fill = true});
   EXPECT_LT(filled->value(inside_cavity), 0.0);
-  EXPECT_LT(filled->value(Vec3(21.5, 21.5, 12.4) * kMm), 0.0);  // where the cavity's wall was
+  EXPECT_LT(filled->value(Vec3(21.5, 21.5, 12.4) * kMm), 0.0);  // the place of the cavity's wall
   const FieldPtr open = thresholdField(shell(true), {.above = 0, .fill = true});
   EXPECT_GT(open->value(inside_cavity), 0.0);
   EXPECT_LT(open->value(in_wall), 0.0);
 }
 
-// An air path whose voxels only share edges is a path; one whose voxels only share corners is none.
+// An air passage whose voxels share only edges is open; one whose voxels share only corners is
+// closed.
 TEST(ScanSurface, AirPassesEdgesButNotCorners) {
   for (const bool corner : {false, true}) {
     const Image image = cubeImage(15, [corner](const Vec3& p) {
@@ -341,7 +342,8 @@ TEST(ScanSurface, ReportsProgressThatOnlyGrowsAndStopsWhenTold) {
   }
 }
 
-/// Parts of an image of cubic voxels, by their names: volume, and voxel centers on the wrong side.
+/// Checks named parts of an image with cubic voxels: volume, and number of voxel centers on the
+/// wrong side.
 void expectVolumesKept(const Image& image, const NameTable& names,
                        const std::vector<std::string>& parts) {
   for (const std::string& name : parts) {
@@ -375,7 +377,7 @@ void expectVolumesKept(const Image& image, const NameTable& names,
     const double spacing = glm::length(image.axes[0]);
     const double counted = static_cast<double>(voxels) * std::pow(spacing, 3.0);
     const double enclosed = volumeOf(*field, 0.5 * spacing);
-    // Voxel faces overstate the area of a surface of all directions by 3 / 2.
+    // Voxel faces overestimate the area of a surface with all directions by 3 / 2.
     const double area = static_cast<double>(faces) * spacing * spacing / 1.5;
     const double offset = (enclosed - counted) / area / spacing;
     std::printf(
@@ -383,7 +385,7 @@ void expectVolumesKept(const Image& image, const NameTable& names,
         "in the mean), %.1f %% of the voxel centers outside, by %.2f voxel at most\n",
         name.c_str(), voxels, counted * 1e6, enclosed * 1e6, 100 * (enclosed / counted - 1), offset,
         100.0 * static_cast<double>(outside) / static_cast<double>(voxels), worst / spacing);
-    // The label ball of R = 20 mm above has 0.07 / 0.8 = 0.09; the aorta has a radius of 3.5
+    // The label ball with R = 20 mm above has 0.07 / 0.8 = 0.09; the aorta has a radius of 3.5
     // voxels.
     EXPECT_LT(std::abs(offset), 0.2) << name;
     EXPECT_LT(worst, 0.5 * spacing) << name;
@@ -391,7 +393,7 @@ void expectVolumesKept(const Image& image, const NameTable& names,
 }
 
 TEST(ScanSurface, FiveNucleiByNameKeepTheirVolume) {
-  // Caudate and hippocampus reach beyond these voxels, and end in flat walls there.
+  // Caudate and hippocampus reach beyond these voxels, and end there in flat walls.
   expectVolumesKept(test::deepBrain(), readLabelTable(test::mricron("aal.nii.txt")).names,
                     {"Thalamus_L", "Putamen_L", "Pallidum_L", "Hippocampus_L", "Caudate_L"});
 }

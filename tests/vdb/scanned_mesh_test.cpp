@@ -1,4 +1,4 @@
-// Meshes of a real scan, written, read and looked over: nuclei of Debian's atlas of a brain.
+// Meshes of a real scan, written, read and checked: nuclei from Debian's atlas of a brain.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ TEST(ScannedMesh, IsClosedAndOfOnePartInEveryFormat) {
       EXPECT_TRUE(report.isClosed());
       EXPECT_EQ(report.flipped_edges, 0U);
       EXPECT_EQ(report.components, 1U);
-      // The voxels of 1 mm^3 within a percent, as their surface has them.
+      // The surface encloses the volume of the voxels of 1 mm^3 within a percent.
       EXPECT_NEAR(report.volume * 1e9 / voxels, 1.0, 0.01);
       const MeshDefects defects = findDefects(mesh);
       EXPECT_EQ(defects.parts, 1U);
@@ -45,8 +45,8 @@ TEST(ScannedMesh, IsClosedAndOfOnePartInEveryFormat) {
   }
 }
 
-/// How far a point is from the nearest face between a voxel of the label and one of another
-/// [voxels].
+/// [voxels] Distance of a point from the nearest face between a voxel of the label and one of
+/// another label.
 double offBorder(const Image& image, float label, const Vec3& p) {
   const Vec3 index = image.toIndex(p);
   const auto is_label = [&](const Vec3& v) {
@@ -62,7 +62,7 @@ double offBorder(const Image& image, float label, const Vec3& p) {
       Vec3 b = a;
       b[axis] += 1.0;
       if (is_label(a) == is_label(b)) continue;
-      // The face is a square of a voxel's width.
+      // The face is a square as wide as a voxel.
       Vec3 to = glm::abs(index - 0.5 * (a + b));
       for (int x = 0; x < 3; ++x) to[x] = std::max(to[x] - (x == axis ? 0.0 : 0.5), 0.0);
       nearest = std::min(nearest, glm::length(to));
@@ -71,7 +71,7 @@ double offBorder(const Image& image, float label, const Vec3& p) {
   return nearest;
 }
 
-// As 3D Slicer writes models: legacy VTK, x to the left and y to the back.
+// In the form in which 3D Slicer writes models: legacy VTK, x to the left and y to the back.
 TEST(ScannedMesh, AModelInLpsLiesOnItsLabels) {
   const TempFolder folder;
   const Image brain = test::deepBrain();
@@ -92,13 +92,13 @@ TEST(ScannedMesh, AModelInLpsLiesOnItsLabels) {
   const Mesh mesh = readMesh(folder.file("thalamus.vtk", text), kMm);
   ASSERT_EQ(mesh.vertices.size(), made.vertices.size());
   EXPECT_TRUE(mesh.space_is_stated);
-  EXPECT_GT(checkMesh(mesh).volume, 0.0);  // turned about z, not mirrored
+  EXPECT_GT(checkMesh(mesh).volume, 0.0);  // rotated about z, not mirrored
   double worst = 0.0;
   for (const Vec3& v : mesh.vertices) worst = std::max(worst, offBorder(brain, 77.0F, v));
   std::printf("  %zu vertices, %.2f voxel from the voxels' faces at most\n", mesh.vertices.size(),
               worst);
-  // Smooth walls cut the steps of voxels: their centers, half a voxel from each face, stay on their
-  // side.
+  // Smooth walls cut off the steps of voxels, but voxel centers, half a voxel from each face, stay
+  // on their side.
   EXPECT_LT(worst, 0.75);
 }
 

@@ -1,4 +1,5 @@
-// Every real scan against nibabel, ITK and pydicom: where its voxels lie, and what they hold.
+// Every real scan compared with nibabel, ITK and pydicom: the places of its voxels, and their
+// values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +42,8 @@ TEST(Scans, NrrdAndMetaImageAreAsItkHasThem) {
   ASSERT_GE(files.size(), 8U);
   for (const std::string& file : files) {
     SCOPED_TRACE(file);
-    if (file.ends_with("Overlapping.seg.nrrd")) continue;  // two numbers a voxel to ITK; below
+    // ITK reads it as two numbers per voxel; see below
+    if (file.ends_with("Overlapping.seg.nrrd")) continue;
     const bool without_place = file.ends_with("hand_lowres.nrrd");
     ImageOptions options;
     if (without_place) options.affine = AffineChoice::kSpacing;
@@ -49,7 +51,7 @@ TEST(Scans, NrrdAndMetaImageAreAsItkHasThem) {
     const test::ItkImage itk = test::readWithItk(file);
     EXPECT_EQ(image.size, itk.size);
     EXPECT_EQ(test::histogramOf(image), itk.histogram);
-    // Of an image without a place ITK assumes L, P, S; so it is asked for instead.
+    // For an image without a place ITK assumes L, P, S, so that LPS is requested here.
     if (!without_place) {
       EXPECT_LT(test::farthestOff(image, itk.affine), test::kSamePlace);
     }
@@ -91,7 +93,7 @@ TEST(Scans, LabelsOfADicomSeriesLieOnItsRibs) {
   const auto expected =
       test::askPython("mean", {folder + "/series", folder + "/seg_LAS.nii.gz", "92", "115"});
   EXPECT_EQ(static_cast<double>(count), expected.at(0).at(1));
-  // The same whole numbers summed: the difference is rounding.
+  // Sums of the same integers: the difference is rounding.
   EXPECT_NEAR(mean, expected[0][0], 1e-6);
   EXPECT_NEAR(mean, 275.0, 5.0);
   std::printf("mean of the ribs: %.2f HU (%zu voxels)\n", mean, count);
@@ -117,7 +119,7 @@ TEST(Scans, OverlappingSegmentsShareVoxelsByTheRule) {
   PALPATE_NEEDS_SCAN(folder);
   const Image plain = readImage(folder + "Segmentation.seg.nrrd");
   const Image image = readImage(folder + "SegmentationOverlapping.seg.nrrd");
-  // The layers as they are, each alone.
+  // The two layers, each read by itself.
   ImageOptions first, second;
   first.frame = 0;
   second.frame = 1;
@@ -127,7 +129,7 @@ TEST(Scans, OverlappingSegmentsShareVoxelsByTheRule) {
   std::size_t shared = 0;
   for (std::size_t i = 0; i < image.values.size(); ++i) {
     if (above.values[i] != 0.0F && below.values[i] != 0.0F) ++shared;
-    // Label 1 of layer 1 is the eighth segment, and the later one of the file has the voxel.
+    // Label 1 of layer 1 is the eighth segment; as the later one in the file it gets the voxel.
     ASSERT_EQ(image.values[i], above.values[i] != 0.0F ? 8.0F : below.values[i]);
   }
   EXPECT_EQ(shared, 15514U);
@@ -149,7 +151,7 @@ TEST(Scans, NamesInsideTotalSegmentatorsFileAreThoseOfItsTable) {
   table.erase(0);
   EXPECT_EQ(info.labels.names, table);
   EXPECT_EQ(info.labels.colors.at(1), (LabelColor{0.0F, 1.0F, 0.0F}));
-  // The image serves as a table too.
+  // The image also serves as a table.
   EXPECT_EQ(readLabelTable(folder + "example_seg.nii.gz").names, table);
 }
 

@@ -1,5 +1,4 @@
-// `baked` in scene files: what is made when, what notes say, ports on its faces, and where errors
-// point.
+// `baked` in scene files: what is made when, notes, ports on its faces, and places of errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +35,8 @@ class SceneBaked : public ::testing::Test {
     return parseScene("palpate: 1\nlength: mm\nfields:\n" + body, "test.yaml", registry_);
   }
 
-  /// Expects an error of `code` at line and column of the scene, saying `says`; made() or not.
+  /// Expects an error of `code` at a line and column of the scene, with the text `says`; on
+  /// reading, or when the field is made.
   void expectError(const std::string& body, const std::string& code, int line, int column,
                    const std::string& says) {
     try {
@@ -126,7 +126,7 @@ TEST_F(SceneBaked, ErrorsPointAtWhatIsWrong) {
   expectError("  b: {baked: {voxel: 1}}\n", "scene.missing_key", 4, 14, "field");
   expectError("  b: {baked: {field: nothing}}\n", "scene.unknown_field", 4, 22, "nothing");
   expectError("  b: {baked: {field: b}}\n", "scene.cycle", 4, 22, "b -> b");
-  // Known only when it is made.
+  // Only known when it is made.
   expectError("  b: {baked: {field: wave}}\n" + kWave, "bake.unbounded", 4, 14, "voxel");
   expectError("  b: {baked: {field: wave, voxel: 1, parts: whole}}\n" + kWave, "bake.unbounded", 4,
               14, "analytic");
@@ -159,7 +159,7 @@ TEST_F(SceneBaked, GridsOfAFileTakeTheirPlaces) {
   EXPECT_EQ(grids_[0].what, "baked field in line 4, part 2");
   for (int i = 0; i < 500; ++i) {
     const Vec3 p = Vec3(11.0 * std::sin(1.7 * i), 11.0 * std::sin(2.3 * i), 0.03 * i - 7) * kMm;
-    // Voxels are written in mm, as floats, and read back as they were.
+    // Voxels are written as floats in mm, and read back unchanged.
     EXPECT_EQ(made->value(p), hybrid.field->value(p));
   }
   const auto expect_refused = [&](const std::string& body, const std::string& code,
@@ -205,7 +205,7 @@ TEST_F(SceneBaked, WhatIsDamagedInAFileIsRebuiltAndToldOrRefused) {
     change(accessor, at);
     return makeLevelSet(copy, "mm", whole.info().metadata);
   };
-  // Four voxels out it says 2.2.
+  // The value four voxels outside becomes 2.2.
   (void)made(damaged(
       {22, 0, 0}, [](auto& accessor, const openvdb::Coord& at) { accessor.setValueOn(at, 1.1F); }));
   EXPECT_NE(notes_.find("rebuilt"), std::string::npos) << notes_;
@@ -235,8 +235,7 @@ TEST_F(SceneBaked, FieldsInItCountAsNested) {
   }
 }
 
-// What the device cannot reach of a grid is not made; within its reach nothing tells the
-// difference.
+// The part of a grid that the device cannot reach is not made; within reach there is no difference.
 TEST_F(SceneBaked, BeyondTheWorkspaceNoGridIsMade) {
   const std::string scene =
       "  ring: {torus: {center: [0, 0, 0], axis: [0, 0, 1], radius: 20, tube: 8}}\n"
@@ -265,8 +264,8 @@ TEST_F(SceneBaked, BeyondTheWorkspaceNoGridIsMade) {
   for (int i = 0; i < 60000; ++i) {
     const double t = 0.001 * i;
     const Vec3 wave(std::sin(3.1 * t), std::cos(2.3 * t), std::sin(1.7 * t + 1.0));
-    // On the border of the workspace as well, but no deeper in a wall than is kept beyond it: 2.7
-    // mm.
+    // Also on the border of the workspace, but no deeper in a wall than the margin kept beyond it:
+    // 2.7 mm.
     const HipState hip{glm::clamp(reach.center() + 0.6 * reach.size() * wave, reach.lo, reach.hi),
                        Vec3(0.0)};
     if (is_lost && all->regionAt(hip.position) == kOutside) {
@@ -280,8 +279,8 @@ TEST_F(SceneBaked, BeyondTheWorkspaceNoGridIsMade) {
     const TickResult one = a->update(hip);
     ASSERT_EQ(one.region, two.region) << i;
     ASSERT_EQ(one.contact, two.contact) << i;
-    // The steepest slope of the bricks made is the bound on all steps: the proxy stops elsewhere
-    // within its tolerance of 1e-9 voxels, and slides by as much of what it has slid.
+    // The steepest slope of the existing bricks limits all steps: the proxy stops at another place
+    // within its tolerance of 1e-9 voxels, and the difference grows with each slide.
     ASSERT_LT(glm::distance(one.proxy, two.proxy), 1e-8 * kMm) << i;
     touched += one.contact ? 1 : 0;
   }
@@ -303,12 +302,12 @@ TEST(GridField, OfAPartIsThatOfTheWholeAndKeepsItsSignBeyond) {
       const FieldSample one = part->sample(p);
       const FieldSample two = whole->sample(p);
       ASSERT_EQ(one.in_band, two.in_band) << i;
-      // Places are counted from another corner, and rounded from there.
+      // Positions are relative to another corner, and are rounded accordingly.
       ASSERT_LT(glm::distance(one.gradient, two.gradient), 1e-12) << i;
       if (two.in_band) {
         ASSERT_NEAR(one.value, two.value, 1e-12 * kMm) << i;
       } else {
-        // The bound is that of the bricks that there are.
+        // The bound is that of the existing bricks.
         ASSERT_EQ(one.value < 0.0, two.value < 0.0) << i;
         ASSERT_GE(std::fabs(one.value), (1.0 - 1e-12) * std::fabs(two.value)) << i;
       }

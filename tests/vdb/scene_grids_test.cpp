@@ -1,4 +1,5 @@
-// `grids` of a scene: formulas become grids where these are as good and faster, and nowhere else.
+// `grids` of a scene: formulas become grids where these are accurate enough and faster, and nowhere
+// else.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +33,7 @@ class SceneGrids : public ::testing::Test {
   SceneRegistry registry_;
 };
 
-/// Thirty blended balls: far slower by formula than out of a grid.
+/// Thirty blended balls: far slower by formula than by grid.
 std::string drops() {
   std::string text =
       "layers:\n  - name: drops\n    inside:\n      metaballs:\n        fall_off: "
@@ -53,7 +54,7 @@ TEST_F(SceneGrids, WhatIsSlowBecomesAGridWithinTheTolerance) {
   ASSERT_FALSE(notes_.empty()) << "a note tells the decision";
   const Field& grid = *scene->regions()[1].field;
   const Field& exact = *formula->regions()[1].field;
-  // Both surfaces along rays from the middle, found by halving.
+  // Both surfaces along rays from the middle, found by bisection.
   for (int i = 0; i < 200; ++i) {
     const double z = -1.0 + (2.0 * i + 1.0) / 200.0;
     const Vec3 u(std::sqrt(1.0 - z * z) * std::cos(2.4 * i),
@@ -67,8 +68,8 @@ TEST_F(SceneGrids, WhatIsSlowBecomesAGridWithinTheTolerance) {
       }
       return inside;
     };
-    // Along a ray the distance between two surfaces is longer than across them, by 1 / cos of the
-    // slant.
+    // Along a ray the distance between two surfaces is larger than the perpendicular one, by 1 /
+    // cos of the angle.
     EXPECT_NEAR(surface(grid), surface(exact), 3.0 * kTolerance) << i;
   }
 }

@@ -1,5 +1,4 @@
-// Scene files that name meshes, grids and images: what is read when, what notes say, and where
-// errors point.
+// Scene files that name meshes, grids and images: what is read when, notes, and places of errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,7 +48,7 @@ class SceneKinds : public ::testing::Test {
     return readScene(folder_.file("scene.yaml", "palpate: 1\nlength: mm\n" + body), registry_);
   }
 
-  /// Expects an error of `code` at line and column of the scene, saying `says`.
+  /// Expects an error of `code` at a line and column of the scene, with the text `says`.
   void expectError(const std::string& body, const std::string& code, int line, int column,
                    const std::string& says) {
     try {
@@ -86,8 +85,7 @@ TEST_F(SceneKinds, LayersOfAnImageAreMadeWhenAskedForAndShareTheirGroup) {
   EXPECT_EQ(scene.layers[1].inside->summary(), "labels 2 7 of labels.nii");
   EXPECT_EQ(scene.layers[2].inside->summary(), "labels.nii above 0.5");
   EXPECT_TRUE(grids_.empty());
-  // Unit code 0 is noted once, although two images, three layers and their voxels come from the
-  // file.
+  // Unit code 0 is noted once, although two images, three layers and their voxels use the file.
   ASSERT_EQ(notes_.size(), 1U);
   EXPECT_NE(notes_[0].find("labels.nii"), std::string::npos);
   EXPECT_NE(notes_[0].find("taken as mm"), std::string::npos);
@@ -112,7 +110,7 @@ TEST_F(SceneKinds, LayersOfAnImageAreMadeWhenAskedForAndShareTheirGroup) {
   EXPECT_LT(left.value(Vec3(-6, 0, 0) * kMm), 0.0);
   EXPECT_GT(left.value(Vec3(6, 0, 0) * kMm), 0.0);
   EXPECT_LT(right.value(Vec3(6, 0, 0) * kMm), 0.0);
-  // Each reaches a little over the wall, which is where both are the same.
+  // Each layer reaches slightly beyond the wall, which is where both have the same value.
   const Vec3 wall = Vec3(0, 1, 2) * kMm;
   EXPECT_NEAR(left.value(wall) - right.value(wall), 0.0, 0.02 * kMm);
   EXPECT_LT(left.value(wall), -0.1 * kMm);
@@ -120,7 +118,7 @@ TEST_F(SceneKinds, LayersOfAnImageAreMadeWhenAskedForAndShareTheirGroup) {
   EXPECT_LT(both.value(Vec3(0, 0, 0)), 0.0);
 }
 
-// A grid knows distances in its band alone: what is made of it must not reach farther.
+// A grid knows distances in its band only: fields made from it must stay within the band.
 TEST_F(SceneKinds, OffsetsShellsAndBlendsStayInTheBandOfAMesh) {
   const SceneDescription scene = read(
       "fields:\n"
@@ -130,7 +128,8 @@ TEST_F(SceneKinds, OffsetsShellsAndBlendsStayInTheBandOfAMesh) {
       "  far: {offset: {field: jewel, distance: 5}}\n"
       "  soft: {smooth_union: {fields: [jewel, peel], radius: 5}}\n");
   EXPECT_EQ(scene.fields[1].source->summary(), "mesh octahedron.obj");
-  // The face x + y + z = 10 mm is 2 / sqrt(3) mm from (4, 4, 4); flat, so the grid has it well.
+  // The face x + y + z = 10 mm is 2 / sqrt(3) mm from (4, 4, 4); it is flat, so that the grid holds
+  // it accurately.
   EXPECT_NEAR(scene.fields[1].source->get()->value(Vec3(4) * kMm), (2 / std::sqrt(3.0) - 1) * kMm,
               0.01 * kMm);
   const Field& peel = *scene.fields[2].source->get();
@@ -199,7 +198,7 @@ TEST_F(SceneKinds, MeshesOfFlatFacesKeepTheirEdgesUnlessAGridIsAskedFor) {
 }
 
 TEST_F(SceneKinds, MeshesTakeASignAShellAndSmoothing) {
-  // The octahedron without two of its faces: more than is guessed.
+  // The octahedron without two of its faces: too open for a guess.
   (void)folder_.file("open.obj",
                      "v 10 0 0\nv -10 0 0\nv 0 10 0\nv 0 -10 0\nv 0 0 10\nv 0 0 -10\n"
                      "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\n");
@@ -217,7 +216,7 @@ TEST_F(SceneKinds, MeshesTakeASignAShellAndSmoothing) {
   const double from_center = (10.0 / std::sqrt(3.0) + 0.5) * kMm;
   const Vec3 in_wall = from_center * glm::normalize(Vec3(-1.0, 1.0, 1.0));
   EXPECT_NEAR(wall.value(in_wall), -0.5 * kMm, 0.02 * kMm);
-  // Its edges of 109 degrees are turns by 70.5: below 90, so that faces bulge.
+  // At its edges of 109 degrees normals turn by 70.5, which is below 90, so that faces bulge.
   EXPECT_LT(scene.fields[3].source->get()->value(Vec3(10.0 / 3.0) * kMm), -1.0 * kMm);
 }
 

@@ -1,5 +1,5 @@
-// Parameters of a scene that come from .vdb files and images: read as python3-openvdb writes them,
-// felt as they say, and refused with a place and a remedy.
+// Parameters of a scene from .vdb files and images: read as python3-openvdb writes them, felt
+// accordingly, and otherwise refused with a place and a remedy.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ class SceneMaps : public ::testing::Test {
   static void SetUpTestSuite() {
     home = new TempFolder;
     (void)oracle("write '" + home->path() + "'");
-    // One row of voxels along x: -1000, -100, 100, 300, 3000 at 0, 2, .. 8 mm.
+    // One row of voxels along x: -1000, -100, 100, 300, 3000 at 0, 2, ... 8 mm.
     test::NiftiFile image;
     image.dim = {5, 2, 2};
     image.datatype = 16;  // float
@@ -82,7 +82,8 @@ TEST_F(SceneMaps, AGridOfPythonsIsFeltAsItSays) {
   for (const double x : {2e-3, 7e-3, 13e-3, 18.5e-3}) {
     (void)renderer->update({.position = {x, 8e-3, 7e-3}});
     const TickResult out = renderer->update({.position = {x, 8e-3, 5e-3}});
-    // 200 + 10 x [mm] N/m, 1 mm deep; and half its slope, 1e4 N/m per m, times the square of that.
+    // 200 + 10 x [mm] N/m, 1 mm deep; plus half the gradient of stiffness, 1e4 N/m per m, times the
+    // square of the depth.
     EXPECT_NEAR(out.force.z, (200.0 + 1e4 * x) * 1e-3, 1e-7) << x;
     EXPECT_NEAR(out.force.x, -0.5 * 1e-6 * 1e4, 1e-7) << x;
   }
@@ -124,7 +125,7 @@ TEST_F(SceneMaps, AnImageIsFeltThroughItsTransferFunction) {
       text("{image: ct, transfer: [[-100, 200 N/m], [300, 2 N/mm]]}",
            ", friction: {static: {image: ct, transfer: [[0, 0.5], [300, 0.2]], tolerance: 0.01}}"));
   const Parameter& stiffness = description.materials[0].stiffness;
-  // At the third voxel: an eighth of each neighbor, three quarters of its own.
+  // At the third voxel: an eighth of each neighbor, and three quarters of its own value.
   EXPECT_NEAR(stiffness.at({4e-3, 0, 0}), 0.125 * 200.0 + 0.75 * 1100.0 + 0.125 * 2000.0, 0.02);
   EXPECT_EQ(stiffness.range().least, 200.0);
   EXPECT_NEAR(stiffness.range().most, 2000.0, 0.02);
@@ -146,8 +147,8 @@ TEST_F(SceneMaps, AFlowComesFromAnImageAndMayBeBelowZero) {
                 ", viscosity: 2 N.s/m, flow: [{image: ct, transfer: [[-100, -20 mm/s], [300, 1 "
                 "cm/s]]}, 0 mm/s, 5 mm/s]"));
   const Flow& flow = description.materials[0].flow;
-  // -20, -5 and 10 mm/s at the second to fourth voxel: an eighth of each neighbor, three quarters
-  // of its own.
+  // -20, -5 and 10 mm/s at the second to fourth voxel: an eighth of each neighbor, and three
+  // quarters of its own value.
   EXPECT_NEAR(flow.at({4e-3, 0, 0}).x, -5e-3, 1e-6);
   EXPECT_NEAR(flow.at({0, 0, 0}).x, -20e-3, 1e-6);
   EXPECT_NEAR(flow.x.range().least, -20e-3, 1e-6);
@@ -155,7 +156,7 @@ TEST_F(SceneMaps, AFlowComesFromAnImageAndMayBeBelowZero) {
   EXPECT_EQ(flow.at({4e-3, 0, 0}).y, 0.0);
   EXPECT_EQ(flow.at({4e-3, 0, 0}).z, 5e-3);
   EXPECT_NO_THROW((void)compile(description));
-  // Anything but a velocity is refused where it stands, and so is a stiffness below 0.
+  // A value that is not a velocity is refused with its place, and so is a stiffness below 0.
   EXPECT_EQ(
       refusal(text("100 N/m", ", flow: [{image: ct, transfer: [[0, 1 N]]}, 0 m/s, 0 m/s]")).code,
       "scene.quantity");
@@ -165,8 +166,8 @@ TEST_F(SceneMaps, AFlowComesFromAnImageAndMayBeBelowZero) {
 struct Row {
   std::string stiffness;
   std::string code;
-  std::string message;  ///< part of it
-  std::string hint;     ///< part of it
+  std::string message;  ///< a part of it
+  std::string hint;     ///< a part of it
   int column;
 };
 
@@ -218,8 +219,8 @@ TEST_F(SceneMaps, PythonReadsWhatIsWritten) {
   const NamedMaterialGrid named = {"skin/stiffness", grid, "N/m", "mm", {{"layer", "skin"}}};
   const std::string path = home->path("written.vdb");
   writeVdb(path, {}, true, std::span(&named, 1));
-  // 11 x 9 x 7 voxels of 2 mm; steps of 200 / 255 N/m, so that 20 N/m apart they are off by 0.39 at
-  // most.
+  // 11 x 9 x 7 voxels of 2 mm; with steps of 200 / 255 N/m, values that are 20 N/m apart have
+  // errors of at most 0.39.
   const std::string out = oracle("read '" + path + "' skin/stiffness");
   int n[7];
   double p[6];

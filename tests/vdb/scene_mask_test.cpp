@@ -1,5 +1,5 @@
-// Grids of booleans, masks and densities as openings of ports: they say where, and are not taken
-// for distances.
+// Grids of booleans, masks and densities as openings of ports: they tell inside from outside, and
+// are not read as distances.
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
@@ -25,7 +25,7 @@ class SceneMask : public ::testing::Test {
     registerKinds(registry_);
   }
 
-  /// Fills `grid` with what f(distance from the middle in mm) gives, and writes it.
+  /// Fills `grid` with f(distance from the middle in mm), and writes it.
   template <typename Grid, typename F>
   void write(const std::string& file, openvdb::GridClass grid_class, const F& f) {
     auto grid = Grid::create();
@@ -62,7 +62,7 @@ ports: [{name: hole, between: [outside, ball], where: {mask: )" +
                              registry_));
   }
 
-  /// Where a hand straight down at x [mm] gets into the ball.
+  /// Whether a hand that moves straight down at x [mm] gets into the ball.
   static bool opensAt(const ScenePtr& scene, double x) {
     const auto renderer = makeRenderer(scene);
     TickResult out;
@@ -74,11 +74,11 @@ ports: [{name: hole, between: [outside, ball], where: {mask: )" +
 
   void expectOpening(const std::string& mask) {
     const ScenePtr scene = sceneWith(mask);
-    // The ball of the mask cuts the ball's surface (y = 0) between x = -1.2 and 10.7 mm or so.
+    // The ball of the mask cuts the ball's surface (y = 0) between about x = -1.2 and 10.7 mm.
     const auto surface = [](double x) { return std::sqrt(20.6 * 20.6 - x * x); };
     for (double x = -8.0; x <= 18.0; x += 0.25) {
       const double off = std::hypot(x - 5.0, surface(x) - 20.0) - kRadius;
-      if (std::fabs(off) < 0.4 * kVoxel) continue;  // as sharp as its voxels
+      if (std::fabs(off) < 0.4 * kVoxel) continue;  // the border is only as sharp as the voxels
       EXPECT_EQ(opensAt(scene, x), off < 0.0) << mask << " at " << x;
     }
   }
@@ -109,7 +109,7 @@ TEST_F(SceneMask, ABooleanGridIsWhereItIsTrue) {
 }
 
 TEST_F(SceneMask, AFogVolumeIsWhereItIsDense) {
-  // Dense within, thin without: read as a level set, inside would be where it is not.
+  // Dense inside, thin outside: read as a level set, the ball would be the outside.
   write<openvdb::FloatGrid>("f.vdb", openvdb::GRID_FOG_VOLUME, [](double r) {
     return static_cast<float>(std::clamp(0.5 + (kRadius - r) / 2.0, 0.0, 1.0));
   });

@@ -21,7 +21,7 @@ TEST(SceneVocabulary, KindsOfVdbAndTheSchemaKnowTheSameKeys) {
   image.values.assign(8, 1);
   const test::Bytes bytes = test::bytesOf(image);
   (void)folder.file("i.nii", std::string(bytes.begin(), bytes.end()));
-  // Only looked for when the scene is read.
+  // Its existence is checked when the scene is read.
   (void)folder.file("m.stl", "");
   (void)folder.file("g.vdb", "");
 

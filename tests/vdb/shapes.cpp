@@ -59,7 +59,7 @@ Mesh ballMesh(const Vec3& center, double radius, int levels) {
       mesh.vertices.insert(mesh.vertices.end(), {Vec3(0, a, b), Vec3(a, b, 0), Vec3(b, 0, a)});
     }
   }
-  // The faces of an icosahedron: the triples of corners that are an edge (2) apart.
+  // The faces of an icosahedron: triples of corners that are an edge (2) apart.
   const auto is_edge = [&](std::uint32_t i, std::uint32_t j) {
     return std::abs(glm::distance(mesh.vertices[i], mesh.vertices[j]) - 2.0) < 1e-9;
   };

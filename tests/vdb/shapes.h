@@ -1,5 +1,5 @@
 #pragma once
-// Shapes whose distances are known in closed form, and meshes of them.
+// Shapes with distances in closed form, and meshes of them.
 
 #include <functional>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace palpate::vdb::test {
 
-/// A field out of a function, with what it claims about itself.
+/// A field made from a function, with the properties that it claims.
 class FunctionField final : public Field {
  public:
   struct Claims {
@@ -36,10 +36,11 @@ class FunctionField final : public Field {
   Claims claims_;
 };
 
-/// Torus about z: radii `big` of the ring, `small` of the tube. Exact.
+/// Torus about z: radii `big` of the ring, `small` of the tube. Exact distance.
 [[nodiscard]] FieldPtr torus(double big, double small);
 
-/// |p|^2 / radius - radius: zero on the sphere, no distance. L = 2 in the ball of the radius.
+/// |p|^2 / radius - radius: zero on the sphere, but not a distance. L = 2 in the ball of that
+/// radius.
 [[nodiscard]] FieldPtr implicitBall(double radius);
 
 [[nodiscard]] BakeOptions voxels(double size, double half_width = 6.0);
@@ -50,7 +51,7 @@ class FunctionField final : public Field {
 /// Sphere about `center` of 20 * 4^levels triangles, wound outwards.
 [[nodiscard]] Mesh ballMesh(const Vec3& center, double radius, int levels);
 
-/// Both meshes in one; `inside_out` turns the second.
+/// Both meshes in one; `inside_out` reverses the second.
 [[nodiscard]] Mesh together(const Mesh& a, const Mesh& b, bool inside_out = false);
 
 }  // namespace palpate::vdb::test

@@ -1,4 +1,4 @@
-// Curved meshes with sharp edges: exact triangles by the edges, bricks elsewhere, no step between.
+// Curved meshes with sharp edges: exact triangles near edges, bricks elsewhere, no step in between.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ constexpr double kAngle = 30.0 * kDegree;
 constexpr double kRadius = 15 * kMm;
 constexpr double kHalf = 10 * kMm;
 
-/// A can about z out of `sides` facets around, whose rims are sharp; its walls in strips as high as
-/// wide.
+/// A can about z with `sides` facets around, whose rims are sharp; its walls are strips as high as
+/// they are wide.
 Mesh can(int sides) {
   Mesh mesh;
   mesh.source = "can";
@@ -74,7 +74,7 @@ double angle(const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) / kDegree;
 }
 
-/// Of the true can, whose facets of 0.6 mm are off by 3 um.
+/// The true can; the facets of 0.6 mm deviate from it by 3 um.
 FieldPtr trueCan() { return cylinder(Vec3(0.0), Vec3(0.0, 0.0, 1.0), kRadius, 2.0 * kHalf); }
 
 TEST(SharpEdges, ARimIsWhereItIsAndHasItsNormals) {
@@ -85,7 +85,7 @@ TEST(SharpEdges, ARimIsWhereItIsAndHasItsNormals) {
   for (int n = 0; n < 4000; ++n) {
     const double turn = n * 0.61;
     const Vec3 out(std::cos(turn), std::sin(turn), 0.0);
-    const double along = (n % 40 - 20) * 0.05 * kMm;  // to a voxel and a half beside the rim
+    const double along = (n % 40 - 20) * 0.05 * kMm;  // up to a voxel and a half beside the rim
     const bool on_top = along < 0.0;
     const Vec3 at = on_top ? (kRadius + along) * out + Vec3(0.0, 0.0, kHalf)
                            : kRadius * out + Vec3(0.0, 0.0, kHalf - along);
@@ -93,7 +93,7 @@ TEST(SharpEdges, ARimIsWhereItIsAndHasItsNormals) {
     const Field* const both[] = {fields.bricks.get(), fields.sharp.get()};
     for (int i = 0; i < 2; ++i) {
       place[i] = std::max(place[i], std::abs(both[i]->value(at) - truth->value(at)));
-      // A tenth of a voxel off the edge itself, either side's normal is right.
+      // Within a tenth of a voxel of the edge itself, the normal of either side is right.
       if (std::abs(along) < 0.1 * kVoxel) continue;
       const FieldSample here = both[i]->sample(at + 0.02 * kVoxel * wanted);
       normal[i] = std::max(normal[i], angle(here.gradient, wanted));
@@ -101,7 +101,7 @@ TEST(SharpEdges, ARimIsWhereItIsAndHasItsNormals) {
   }
   std::printf("rim at voxels of 0.5 mm: bricks %.3f mm, %.1f degree; sharp %.4f mm, %.2f degree\n",
               place[0] * 1e3, normal[0], place[1] * 1e3, normal[1]);
-  // The facets: R (1 - cos(pi / 160)) and half the turn between two of them.
+  // The error of the facets: R (1 - cos(pi / 160)), and half the turn between two of them.
   EXPECT_LE(place[1], kRadius * (1.0 - std::cos(std::numbers::pi / 160.0)) + 1e-9);
   EXPECT_LE(normal[1], 180.0 / 160.0 + 1e-3);
   EXPECT_GT(normal[0], 10.0);
@@ -109,8 +109,8 @@ TEST(SharpEdges, ARimIsWhereItIsAndHasItsNormals) {
 
 TEST(SharpEdges, BricksAndTrianglesJoinWithoutAStep) {
   const Fields fields = fieldsOf(can(320));
-  // Away from the rim across where they join, on both faces: value and gradient change no more than
-  // the triangles' own facets do (half the turn between two of them, in a step).
+  // Away from the rim across the transition, on both faces: value and gradient change no more than
+  // the triangles' own facets make them (half the turn between two of them, in a step).
   double step = 0.0;
   double turn = 0.0;
   for (int line = 0; line < 50; ++line) {
@@ -151,14 +151,14 @@ TEST(SharpEdges, ValueAndGradientAgree) {
     const Vec3 d = 1e-3 * kVoxel * Vec3(any(random), any(random), any(random));
     const FieldSample ahead = fields.sharp->sample(p + d);
     const FieldSample behind = fields.sharp->sample(p - d);
-    // Where the band ends, exact values end with it: beyond, a value only says how far it is at
-    // least.
+    // Exact values end where the band ends: beyond it, a value is only a lower bound of the
+    // distance.
     if (!ahead.in_band || !behind.in_band) continue;
     const double change = ahead.value - behind.value;
     EXPECT_LE(std::abs(change), fields.sharp->lipschitz() * 2.0 * glm::length(d) * (1.0 + 1e-6));
     if (std::abs(change - 2.0 * glm::dot(here.gradient, d)) > 0.02 * glm::length(d)) off += 1.0;
   }
-  // Only where the difference straddles a fold within the solid, or beyond a facet's side.
+  // Only if the difference crosses a fold inside the solid, or the side of a facet.
   EXPECT_LT(off, 0.01 * 20000);
 }
 
@@ -182,15 +182,15 @@ TEST(SharpEdges, WhatIsNotOneClosedSurfaceIsRefused) {
   Mesh open = cube;
   open.triangles.pop_back();
   EXPECT_EQ(code(cube, open), "mesh.sharp_open");
-  // So small that every edge of both has a wall of the other's inside within five voxels.
+  // So small that every edge of both boxes has a wall of the other one's inside within five voxels.
   const Vec3 small(4 * kMm);
   const Mesh overlapping = together(boxMesh(Vec3(0.0), small), boxMesh(Vec3(1 * kMm), small));
   EXPECT_EQ(code(overlapping, overlapping), "mesh.sharp_inner");
 }
 
 TEST(SharpEdges, AWallWithinTheSolidBesideASharpEdgeIsNotFelt) {
-  // Within the can and three voxels and a half from its rim, deeper than the grid rounds anything
-  // off: a part of its own is left out.
+  // Inside the can, three and a half voxels from its rim, deeper than the grid rounds anything off:
+  // a separate part there is left out.
   const Vec3 within(13.4 * kMm, 0.0, 8.4 * kMm);
   const Fields fields = fieldsOf(together(can(160), ballMesh(within, 0.4 * kMm, 2)));
   for (int n = 0; n < 100; ++n) {
@@ -200,7 +200,7 @@ TEST(SharpEdges, AWallWithinTheSolidBesideASharpEdgeIsNotFelt) {
 }
 
 TEST(SharpEdges, BesideAWallThatPassesThroughAnotherTheGridAnswers) {
-  // Through the side of the can just below its rim: the rim itself stays outside of the ball.
+  // Through the side of the can just below its rim: the rim itself stays outside the ball.
   const Vec3 middle(15.0 * kMm, 0.0, 7.0 * kMm);
   const Mesh mesh = together(can(160), ballMesh(middle, 2.0 * kMm, 3));
   const FieldPtr bricks = gridField(bakeMesh(mesh, voxels(kVoxel)));
@@ -209,8 +209,8 @@ TEST(SharpEdges, BesideAWallThatPassesThroughAnotherTheGridAnswers) {
   EXPECT_GT(sharp.left_to_grid, 0U);
   EXPECT_LT(sharp.left_to_grid, 40U);
   EXPECT_LT(glm::length(sharp.place - middle), 2.5 * kMm + 5.0 * kVoxel);
-  // The part of the ball that lies within the can, and of the can within the ball, is never felt:
-  // 0.2 mm are below what the grid rounds the crease of both by.
+  // The part of the ball inside the can, and of the can inside the ball, is never felt; a tolerance
+  // of 0.2 mm covers the grid's rounding of the crease between them.
   for (int n = 0; n < 2000; ++n) {
     const Vec3 way(std::cos(n) * std::sin(0.7 * n), std::sin(n) * std::sin(0.7 * n),
                    std::cos(0.7 * n));
@@ -219,22 +219,22 @@ TEST(SharpEdges, BesideAWallThatPassesThroughAnotherTheGridAnswers) {
     if (!grid.in_band || grid.value > -0.5 * kVoxel) continue;
     EXPECT_LT(sharp.field->value(p), -0.2 * kMm) << p.x << " " << p.y << " " << p.z;
   }
-  // Away from it the rim is exact.
+  // Away from the ball the rim is exact.
   const Vec3 rim(-kRadius, 0.0, kHalf);
   EXPECT_NEAR(sharp.field->value(rim + Vec3(-0.3 * kMm, 0.0, 0.4 * kMm)), 0.5 * kMm, 4e-6);
-  // Where no sharp edge is near, a ball through the side does no harm: there the grid answers
-  // anyway.
+  // If no sharp edge is near, a ball through the side does no harm: the grid answers there anyway.
   const Mesh aside = together(can(160), ballMesh(Vec3(15.0, 0.0, 0.0) * kMm, 3.0 * kMm, 3));
   const FieldPtr others = gridField(bakeMesh(aside, voxels(kVoxel)));
   EXPECT_EQ(withSharpEdges(others, aside, kAngle, kVoxel).left_to_grid, 0U);
 }
 
 TEST(SharpEdges, PartsThatAreInsideOutOrWithinOthersAreTheSolidThatWasBaked) {
-  // A can with a hollow, and a cube beside it.
+  // A can with a cavity, and a cube beside it.
   const Mesh hollow = together(can(160), boxMesh(Vec3(0.0), Vec3(8 * kMm)), true);
   const Vec3 beside(40 * kMm, 0.0, 0.0);
   const Fields clean = fieldsOf(together(hollow, boxMesh(beside, Vec3(10 * kMm))));
-  // The cube inside out, and a wall in the can's solid with sharp edges of its own.
+  // The same with the cube inside out, and with a wall inside the can's solid that has sharp edges
+  // of its own.
   const Mesh wall = boxMesh(Vec3(9.5 * kMm, 0.0, 0.0), Vec3(4 * kMm));
   const Fields dirty =
       fieldsOf(together(together(hollow, boxMesh(beside, Vec3(10 * kMm)), true), wall));
@@ -252,7 +252,7 @@ TEST(SharpEdges, PartsThatAreInsideOutOrWithinOthersAreTheSolidThatWasBaked) {
     ASSERT_NEAR(here.value, wanted.value, 1e-3 * kVoxel);
   }
   EXPECT_GT(near, 2000);
-  // Within the cube by one of its edges, and outside of it.
+  // Inside the cube near one of its edges, and outside it.
   const Vec3 edge = beside + Vec3(5 * kMm, 5 * kMm, 0.0);
   EXPECT_NEAR(dirty.sharp->value(edge - Vec3(0.2 * kMm, 0.2 * kMm, 0.0)), -0.2 * kMm, 1e-9);
   EXPECT_NEAR(dirty.sharp->value(edge + Vec3(0.3 * kMm, 0.4 * kMm, 0.0)), 0.5 * kMm, 1e-9);
@@ -263,7 +263,7 @@ TEST(SharpEdgesContact, AroundTheRimOfACanAsAroundTheTrueOne) {
   Drive sharp(sceneOfSolid(fields.sharp));
   Drive rounded(sceneOfSolid(fields.bricks));
   Drive truth(sceneOfSolid(trueCan()));
-  // Over the rim from the side to the top, a millimeter deep, 0.1 mm a tick, all around.
+  // Over the rim from the side to the top, a millimeter deep, 0.1 mm per tick, all around.
   double worst[2] = {0.0, 0.0};
   int contacts = 0;
   for (int line = 0; line < 40; ++line) {

@@ -1,4 +1,4 @@
-// Where a wall of a mask is a single voxel.
+// Places where a wall of a mask is a single voxel.
 
 #include "scan/single_walls.h"
 
@@ -31,7 +31,7 @@ bool isAny(const Mask& mask, const std::array<int, 3>& at) {
 }
 
 TEST(SingleWalls, OneVoxelBetweenPlacesOfTwoIsOneAndSoIsAGap) {
-  // Two voxels thick, a step up of one voxel, and there a single one.
+  // A wall two voxels thick with a step of one voxel, and beside it a single layer.
   const auto wall = [](const std::array<int, 3>& at) {
     const int low = at[0] < 10 ? 8 : 9;
     const int high = at[0] <= 10 ? 9 : 10;
@@ -58,8 +58,8 @@ TEST(SingleWalls, ALoneVoxelOnABodyAndAPitInItAreNone) {
 }
 
 TEST(SingleWalls, WhatHasAnEdgeOpenBesideItPartsNothing) {
-  // A sheet one voxel thick with a voxel moved up: outside leads by edges around the moved one,
-  // inside does not.
+  // A sheet one voxel thick with one voxel moved up: around that voxel, the outside is connected by
+  // edges, the inside is not.
   const auto sheet = [](const std::array<int, 3>& at) {
     const bool is_moved = at[0] == 10 && at[1] == 10;
     return at[2] == (is_moved ? 10 : 9);

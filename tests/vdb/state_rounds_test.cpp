@@ -1,5 +1,5 @@
-// The state of the example scenes of images, saved and given back at random ticks, to the last bit;
-// those of fields alone are tested with the library.
+// States of the example scenes with images, saved and restored at random ticks, exact to the last
+// bit; scenes of fields alone are tested with the library.
 
 #include "support/state_rounds.h"
 

@@ -1,5 +1,5 @@
-// The example scenes of scans feel as they did when their traces were stored; those of fields alone
-// are tested with the library. PALPATE_REWRITE_TRACES=1 palpate_vdb_tests
+// The example scenes of scans feel as they did when their traces were stored; scenes of fields
+// alone are tested with the library. PALPATE_REWRITE_TRACES=1 palpate_vdb_tests
 // --gtest_filter='*StoredTracesOfScans*' stores them anew.
 
 #include <gtest/gtest.h>

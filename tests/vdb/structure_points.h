@@ -1,5 +1,5 @@
 #pragma once
-/// Labels at places that another reader of the same files gives.
+/// Compares labels at places that another reader of the same files gives.
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@ namespace palpate::vdb::test {
 
 inline constexpr const char* kStructuresOracle = "vdb/structures_oracle.py";
 
-/// Each row of `points` is `x y z label` [mm], RAS, of a voxel's center: `image` has a voxel there,
-/// to a hundredth of its size, and it is of this label. At least a quarter of them are of a
-/// structure: an empty image does not pass.
+/// Each row of `points` is `x y z label` [mm], RAS, for a voxel's center: `image` must have a voxel
+/// there, to a hundredth of its size, with this label. At least a quarter of the points must be in
+/// a structure, so that an empty image does not pass.
 inline void expectLabelsAt(const Image& image, const std::vector<std::vector<double>>& points,
                            std::size_t count) {
   ASSERT_EQ(points.size(), count);

@@ -142,7 +142,7 @@ def write_seg(labels_path, kind, path):
         planes = list(range(data.shape[2]))
         if n is not None:
             planes = [k for k in planes if (data[:, :, k] == n).any()]
-            random.shuffle(planes)  # no order is promised
+            random.shuffle(planes)  # the order of planes is not defined
         for k in planes:
             plane = data[:, :, k].T  # rows, columns
             frames.append(plane if n is None else plane == n)
@@ -157,7 +157,7 @@ def write_seg(labels_path, kind, path):
     if kind == "labelmap":
         raw = pixels.astype("<u2").tobytes()
     elif kind == "fractional":
-        # Halves of the largest value and what is just below them.
+        # Values from half of the largest one on, and values just below it.
         raw = numpy.where(pixels, random.integers(100, 201, pixels.shape), random.integers(0, 100, pixels.shape))
         raw = raw.astype("u1").tobytes()
     else:

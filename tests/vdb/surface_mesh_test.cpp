@@ -38,13 +38,13 @@ TEST(SurfaceMesh, BallIsClosedOutwardAndOnTheBall) {
   EXPECT_EQ(report.components, 1U);
   EXPECT_EQ(report.flipped_edges, 0U);
   EXPECT_EQ(report.non_manifold_edges, 0U);
-  // The cubic spline is off by less than 1e-4 of a voxel at r / h = 30, and vertices by a
-  // thousandth of that.
+  // The cubic spline has an error below 1e-4 voxel at r / h = 30, and vertices one of a thousandth
+  // of that.
   for (const Vec3& v : mesh.vertices) {
     ASSERT_NEAR(glm::length(v - Vec3(0.003, -0.02, 0.04)), kRadius, 1e-3 * kVoxel);
   }
-  // Flat triangles between points of a ball lose edge^2 / 8 r of its radius, with edges of up
-  // to 1.5 voxels.
+  // Flat triangles between points of a ball are edge^2 / 8 r below it, with edges of up to 1.5
+  // voxels.
   const double volume = 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 3.0);
   const double sag = std::pow(1.5 * kVoxel, 2.0) / (8.0 * kRadius);
   EXPECT_LT(report.volume, volume);
@@ -73,8 +73,8 @@ void expectSame(const Mesh& a, const Mesh& b, double tolerance) {
 TEST(EncodeMesh, EveryFormatReadsBack) {
   const Mesh& mesh = ballMesh();
   const TempFolder folder;
-  // 0.06 m from the origin: a float holds 4e-9 m there. Dividing and multiplying by the unit rounds
-  // twice.
+  // 0.06 m from the origin: a float has a rounding of 4e-9 m there. Dividing and multiplying by the
+  // unit rounds twice.
   struct {
     const char* extension;
     double unit, tolerance;
@@ -99,8 +99,8 @@ TEST(EncodeMesh, GlbIsInMetersWhateverTheUnit) {
 }
 
 TEST(EncodeMesh, FilesOfFloatsHaveNoTriangleWithTwoCornersInOnePlace) {
-  // Two vertices that differ by less than a float at 0.1 m tells: the side between them goes, with
-  // both its triangles.
+  // Two vertices that are nearer to each other than floats at 0.1 m can show: the side between them
+  // vanishes, with both its triangles.
   Mesh mesh = ballMesh();
   const auto [a, b, c] = mesh.triangles[7];
   for (Vec3& v : mesh.vertices) v += Vec3(0.1);
@@ -110,7 +110,7 @@ TEST(EncodeMesh, FilesOfFloatsHaveNoTriangleWithTwoCornersInOnePlace) {
     const std::string path = folder.file(name, encodeMesh(mesh, meshFormat(name), 1.0));
     const Mesh back = readMesh(path, 1.0);
     EXPECT_EQ(back.triangles.size(), mesh.triangles.size() - 2) << name;
-    EXPECT_EQ(back.dropped_triangles, 0U) << name;  // none was there to be dropped
+    EXPECT_EQ(back.dropped_triangles, 0U) << name;  // there was none to drop
     const MeshReport report = checkMesh(back);
     EXPECT_TRUE(report.isClosed()) << name;
     EXPECT_EQ(report.degenerate_triangles, 0U) << name;

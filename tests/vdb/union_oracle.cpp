@@ -8,7 +8,7 @@ namespace {
 
 using Polygon = std::vector<Vec3>;
 
-/// Appends to `outside` what of a polygon is in front of some plane.
+/// Appends to `outside` the pieces of a polygon that are in front of some plane.
 void subtract(Polygon polygon, const std::vector<Vec3>& normals, const std::vector<Vec3>& places,
               std::vector<Polygon>& outside) {
   for (std::size_t n = 0; n < normals.size() && polygon.size() > 2; ++n) {

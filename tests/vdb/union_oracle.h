@@ -1,5 +1,5 @@
 #pragma once
-// The surface of a union of convex solids, by brute force: every triangle less every other solid.
+// The surface of a union of convex solids, by brute force: every triangle minus all other solids.
 
 #include <vector>
 
@@ -7,15 +7,15 @@
 
 namespace palpate::vdb::test {
 
-/// Knows nothing of the ways that bakeMesh() goes: a solid is the planes of its triangles, and what
-/// of a triangle is in another solid is cut away, one plane after the other.
+/// Independent of the method of bakeMesh(): a solid is the set of planes of its triangles, and the
+/// parts of a triangle inside another solid are cut away, one plane after another.
 class UnionOracle {
  public:
-  /// Convex solids, wound outwards. Faces of two that look the same way in one plane must not
-  /// overlap: each would be taken off the other.
+  /// Convex solids, oriented outwards. Faces of two solids with the same normal in one plane must
+  /// not overlap: each would be removed because of the other.
   explicit UnionOracle(const std::vector<Mesh>& parts);
 
-  /// The signed distance at `p`, if it is less than `reach`; else `reach` or its opposite.
+  /// The signed distance at `p`, if its size is less than `reach`; else `reach` with that sign.
   [[nodiscard]] double at(const Vec3& p, double reach) const;
 
  private:

@@ -26,7 +26,7 @@ def distances(make, name):
     matrix = make
     grid = pyopenvdb.FloatGrid(1e9)
     grid.name = name
-    # Row vectors times the matrix, as OpenVDB has it.
+    # Row vectors times the matrix, as in OpenVDB.
     shape = numpy.array([48, 48, 48])
     index = numpy.stack(numpy.meshgrid(*[numpy.arange(n) - n / 2 for n in shape], indexing="ij"), axis=-1)
     world = index @ matrix[:3, :3] + CENTER
@@ -77,7 +77,7 @@ fog["length_unit"] = "mm"
 side = 48
 axis = 0.5 * (numpy.arange(side) - side / 2)
 x, y, z = numpy.meshgrid(axis, axis, axis, indexing="ij")
-# Passes 0.5 at the ball's surface, in three voxels.
+# Reaches 0.5 at the ball's surface, over three voxels.
 fog.copyFromArray(numpy.clip(0.5 + (RADIUS - numpy.sqrt(x * x + y * y + z * z)) / 1.5, 0.0, 1.0).astype(numpy.float32))
 placed = numpy.eye(4)
 placed[:3, :3] *= 0.5
@@ -100,7 +100,8 @@ empty.transform = pyopenvdb.createLinearTransform(0.5)
 empty["length_unit"] = "mm"
 write("empty", empty)
 
-# The band alone, its inside holding the outside's background: as a tool leaves it that copies active voxels only.
+# Only the band, with the outside's background inside it: the result of a tool that copies active
+# voxels only.
 source = ball()
 hollow = pyopenvdb.FloatGrid(source.background)
 hollow.name = "ball"
@@ -112,7 +113,7 @@ for item in source.iterOnValues():
     accessor.setValueOn(item.min, item.value)
 write("hollow", hollow)
 
-# The same with a shell's two walls, and on a lattice that is turned.
+# The same with a shell's two walls, and on a rotated lattice.
 nested = hollow.deepCopy()
 accessor = nested.getAccessor()
 for item in pyopenvdb.createLevelSetSphere(2.5, tuple(CENTER), 0.5, 3.0).iterOnValues():
@@ -134,7 +135,7 @@ for item in askew.iterOnValues():
                     accessor.setValueOn((x, y, z), item.value)
 write("hollow_turned", band)
 
-# A patch of the band is gone.
+# A patch of the band is missing.
 torn = ball()
 accessor = torn.getAccessor()
 for item in source.iterOnValues():
@@ -142,7 +143,7 @@ for item in source.iterOnValues():
         accessor.setValueOff(item.min, source.background)
 write("torn", torn)
 
-# Values in voxels where they should be in millimeters.
+# Values in voxels instead of millimeters.
 voxels = ball()
 voxels.mapAll(lambda value: value / 0.5)
 voxels.background = 3.0

@@ -1,5 +1,5 @@
-// .vdb files of others: what python3-openvdb and OpenVDB write is read rightly or refused with a
-// reason and what helps; what is written here is read by vdb_print and vdb_render.
+// .vdb files of other tools: files written by python3-openvdb and OpenVDB are read correctly, or
+// refused with a reason and a remedy; files written here are read by vdb_print and vdb_render.
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
@@ -36,7 +36,7 @@ const Vec3 kCenter(1e-3, 2e-3, 3e-3);
 constexpr double kRadius = 6e-3;
 constexpr double kVolume = 4.0 / 3.0 * std::numbers::pi * kRadius * kRadius * kRadius;
 
-/// What vdb_interop.py writes, once for all tests here.
+/// The files that vdb_interop.py writes, once for all tests here.
 class VdbOfOthers : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -132,7 +132,7 @@ TEST_F(VdbOfOthers, TheRestIsRefusedWithWhatHelps) {
     ASSERT_TRUE(check.refused) << c.name;
     EXPECT_EQ(check.refused->code, c.code);
   }
-  // A class that is there is not overridden.
+  // A class stated in the file is not overridden.
   EXPECT_EQ(
       errorOf([] { static_cast<void>(readVdb(path("fog"), "", "", UnknownClass::kLevelSet)); })
           .problem()
@@ -174,11 +174,11 @@ TEST_F(VdbOfOthers, CheckFindsNothingWrongWithABall) {
   ASSERT_TRUE(check.has_distances);
   EXPECT_EQ(check.not_finite.voxels + check.sign_breaks.voxels + check.band_holes.voxels, 0U);
   EXPECT_GT(check.gradient.voxels, 1000U);
-  // Central differences of a ball of 12 voxels: voxel^2 / 6 of the third derivatives.
+  // Central differences on a ball of 12 voxels: errors of voxel^2 / 6 times the third derivatives.
   EXPECT_NEAR(check.gradient.mean, 1.0, 2e-3);
   EXPECT_LT(check.gradient.deviation, 5e-3);
   EXPECT_LT(std::abs(check.gradient.worst - 1.0), 0.02);
-  // Shares of voxels are the mean over half a voxel to each side: (voxel / radius)^2 / 4 more.
+  // A voxel's share is a mean over half a voxel to each side, which adds (voxel / radius)^2 / 4.
   EXPECT_NEAR(check.volume, kVolume * (1.0 + 0.25 / 144.0), 1.5e-3 * kVolume);
   EXPECT_NEAR(check.grid.info.voxel_size, 0.5e-3, 1e-12);
 }
@@ -201,7 +201,7 @@ TEST_F(VdbOfOthers, CheckFindsAMissingInsideAHoleAndOtherUnits) {
   const GridCheck hollow = checked("hollow");
   EXPECT_FALSE(hollow.refused);
   EXPECT_GT(hollow.sign_breaks.voxels, 100U);
-  // Where it breaks is the inner border of the band, 3 voxels below the surface.
+  // The break is at the inner border of the band, 3 voxels below the surface.
   EXPECT_NEAR(glm::distance(hollow.sign_breaks.place, kCenter), kRadius - 1.5e-3, 0.5e-3);
   EXPECT_EQ(hollow.band_holes.voxels, 0U);
   EXPECT_LT(hollow.volume, 0.7 * kVolume);
@@ -274,7 +274,7 @@ TEST(VdbOfOpenVdb, PointsVectorsDoublesAndFrustums) {
 TEST(VdbOfOpenVdb, AnActiveInsideIsNoBand) {
   const TempFolder folder;
   auto dense = sphereGrid();
-  // Leaves and tiles inside, active at minus the background, as copies from arrays leave them.
+  // Active leaves and tiles inside, with minus the background, as in copies of arrays.
   for (int x = -6; x <= 10; ++x) {
     for (int y = -4; y <= 12; ++y) {
       for (int z = -2; z <= 14; ++z) {
@@ -299,7 +299,8 @@ TEST(VdbOfOpenVdb, SharedFolderHolds) {
   EXPECT_FALSE(check.refused);
   EXPECT_EQ(check.sign_breaks.voxels + check.band_holes.voxels + check.not_finite.voxels, 0U);
   EXPECT_NEAR(check.gradient.mean, 1.0, 1e-3);
-  // 125 voxels across, with those of the band whose distance is less than 3: a radius of 59 to 60.
+  // 125 voxels across, including those of the band whose distance is less than 3: a radius of 59 to
+  // 60.
   const double radius = std::cbrt(check.volume * 3.0 / 4.0 / std::numbers::pi) / 0.05e-3;
   EXPECT_GT(radius, 59.0);
   EXPECT_LT(radius, 60.01);
@@ -328,7 +329,8 @@ TEST(VdbForOthers, VdbRenderSeesTheSurface) {
   picture.get();
   const std::string pixels((std::istreambuf_iterator<char>(picture)), {});
   ASSERT_EQ(pixels.size(), std::size_t{3} * 64 * 64);
-  // The ball against the corner's background: 37 mm away under 45 degrees, some 40 % of the height.
+  // The ball in front of the corner's background: 37 mm away at 45 degrees, some 40 % of the
+  // height.
   int other = 0;
   for (std::size_t p = 0; p < pixels.size(); p += 3) {
     other += pixels.compare(p, 3, pixels, 0, 3) != 0 ? 1 : 0;

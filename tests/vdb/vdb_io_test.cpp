@@ -1,4 +1,5 @@
-// .vdb files: what is written comes back, others can read it, and damaged files are named errors.
+// .vdb files: written files are read back, other programs can read them, and damaged ones give
+// named errors.
 
 #include <gtest/gtest.h>
 #include <openvdb/io/Stream.h>
@@ -60,7 +61,7 @@ Error readError(const std::string& path, const std::string& name = "",
   return errorOf([&] { static_cast<void>(readVdb(path, name, unit)); });
 }
 
-/// What a command prints on stdout; its status must be 0.
+/// The output of a command on stdout; its status must be 0.
 std::string outputOf(const std::string& command) {
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return "cannot start " + command;
@@ -135,7 +136,7 @@ TEST(VdbIo, FullDiskAndMissingFolderLeaveNothing) {
   const TempFolder folder;
   const std::string nowhere = folder.path("no/folder/a.vdb");
   EXPECT_EQ(errorOf([&] { write(nowhere, {ball("a")}); }).kind(), ErrorKind::kOperation);
-  // A limit on the size of files acts like a full disk once its signal is ignored.
+  // A limit on the size of files acts like a full disk if its signal is ignored.
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -182,7 +183,8 @@ TEST(VdbIo, PythonReadsIt) {
     EXPECT_EQ(rest.back() == '1', active);
   }
   EXPECT_EQ(asked, voxels_asked.size());
-  EXPECT_EQ(told["names"], "bone/surface,skin/surface");  // in no promised order: by name here
+  // Sorted by name here, because their order is not defined
+  EXPECT_EQ(told["names"], "bone/surface,skin/surface");
   EXPECT_EQ(told["class"], "level set");
   EXPECT_EQ(told["type"], "FloatGrid");
   EXPECT_EQ(told["active"], std::to_string(set.info().active_voxels));
@@ -206,7 +208,7 @@ TEST(VdbIo, VdbPrintReadsIt) {
   EXPECT_NE(told.find(std::to_string(set.info().active_voxels)), std::string::npos);
 }
 
-/// Writes any grids with OpenVDB's own File.
+/// Writes grids with OpenVDB's own File.
 std::string foreign(const TempFolder& folder, const openvdb::GridPtrVec& grids) {
   const std::string path = folder.path("foreign.vdb");
   openvdb::io::File(path).write(grids);
@@ -232,7 +234,8 @@ TEST(VdbIo, FilesOfOthersNeedALengthUnit) {
   const LevelSet set = readVdb(path, "", "cm");
   EXPECT_DOUBLE_EQ(set.info().voxel_size, 5e-3);
   const FieldPtr field = gridField(set);
-  // A hundredth of the voxel: trilinear error of a sphere of 12 voxels is voxel^2 / 8 / r.
+  // Tolerance: the trilinear error for a sphere of 12 voxels is voxel^2 / 8 / r, a hundredth of the
+  // voxel.
   EXPECT_NEAR(field->value(Vec3(61e-3, 0.0, 0.0)), 1e-3, 0.06e-3);
   EXPECT_EQ(readError(path, "", "parsec").problem().code, "unit.unknown");
   // A unit in the file is not overridden.
@@ -309,7 +312,7 @@ TEST(VdbIo, HalfFloatsStreamsAndInstancesAreRead) {
   const TempFolder folder;
   auto half = foreignBall();
   half->setSaveFloatAsHalf(true);
-  // Half floats keep 11 bits: of 1.5, 2^-11.
+  // Half floats keep 11 bits: 2^-11 of 1.5.
   EXPECT_NEAR(gridField(readVdb(foreign(folder, {half}), "", "mm"))->value(Vec3(7e-3, 0, 0)), 1e-3,
               1e-6);
   auto instance = foreignBall();
@@ -364,7 +367,7 @@ TEST(VdbIo, DamagedFilesAreErrorsNotCrashes) {
     EXPECT_EQ(error.problem().file, cut);
     EXPECT_THROW(static_cast<void>(listVdb(cut)), Error);
   }
-  // A flipped bit in the place of a part of the tree, which is at multiples of 4096.
+  // A flipped bit in the origin of a node of the tree; origins are multiples of 4096.
   const std::string at_minus_4096("\x00\xF0\xFF\xFF", 4);
   int misplaced = 0;
   for (std::size_t at = 0; (at = good.find(at_minus_4096, at)) != std::string::npos; ++at) {
@@ -379,13 +382,14 @@ TEST(VdbIo, DamagedFilesAreErrorsNotCrashes) {
     }
   }
   EXPECT_GT(misplaced, 0);
-  // Flipped bits may pass unseen in a voxel's value; they may not crash or come out as another
-  // type.
+  // Flipped bits in a voxel's value may go unnoticed, but may neither crash the reader nor change
+  // the type.
   std::mt19937 random(3);
-  // A damaged size can cost a second and a gigabyte before it is refused, so few by default.
+  // A damaged size can take a second and a gigabyte before it is refused, so that only a few are
+  // tried by default.
 #if defined(__SANITIZE_ADDRESS__)
-  // OpenVDB asks for terabytes then. That operator new throws is what is tested; the sanitizer's
-  // ends the process.
+  // OpenVDB then asks for terabytes. This test relies on operator new throwing; the sanitizer's
+  // would end the process.
   const int damages = 0;
 #else
   const int damages = std::getenv("PALPATE_SLOW_TESTS") != nullptr ? 1500 : 150;

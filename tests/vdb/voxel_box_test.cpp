@@ -1,4 +1,4 @@
-// Where the labels of an image are: all of them in one walk, as each by itself.
+// Boxes of an image's labels: all of them in one pass equal each by itself.
 
 #include "voxel_box.h"
 
@@ -19,7 +19,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// Specks of a few labels in an oblique, sheared image; some voxels are not numbers.
+/// Specks of a few labels in an oblique, sheared image; some voxels are NaN.
 Image randomImage(palpate::test::Random& random) {
   Image image;
   image.size = {7, 5, 6};

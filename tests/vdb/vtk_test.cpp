@@ -1,5 +1,5 @@
-// Legacy VTK polydata: cells of all kinds in every version, RAS and LPS, and real models on their
-// labels.
+// Legacy VTK polydata: cells of all kinds in every version, RAS and LPS, and real models compared
+// with their labels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ void expectBox(const Mesh& mesh) {
 
 TEST(Vtk, PolygonsAndStripsOfEveryVersionMakeTheSameBox) {
   const TempFolder folder;
-  // Quads that wind outwards; or a strip around the box, and two quads.
+  // Quads oriented outwards; or a strip around the box, and two quads.
   const std::string quads =
       "POLYGONS 6 30\n4 3 2 1 0\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
   const std::string strip =
@@ -88,13 +88,13 @@ TEST(Vtk, PolygonsAndStripsOfEveryVersionMakeTheSameBox) {
       std::fclose(in);
       return bytes;
     }();
-    // What is cut before its last cell gives no mesh.
+    // A file truncated before its last cell gives no mesh.
     if (file.ends_with("more.vtk") || file.ends_with("quads.vtk")) continue;
     for (std::size_t length = 0; length + 2 < whole.size(); length += 3) {
       const std::string cut = folder.file("cut.vtk", whole.substr(0, length));
       try {
         const Mesh mesh = readMesh(cut, 1.0);
-        // The last list may be missing whole, which nothing promises.
+        // The last list may be missing as a whole, because nothing announces it.
         EXPECT_TRUE(file.ends_with("strip.vtk") && mesh.triangles.size() == 8) << length;
       } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::kInput);
@@ -128,7 +128,7 @@ TEST(Vtk, SpaceIsAsAskedElseAsTheFileSaysElseRas) {
   const TempFolder folder;
   const auto vertex = [&](const std::string& name, const std::string& text, Space space) {
     const Mesh mesh = readMesh(folder.file(name, text), 1.0, space);
-    EXPECT_NEAR(std::abs(checkMesh(mesh).volume), 0.0, 1e-12);  // one triangle
+    EXPECT_NEAR(std::abs(checkMesh(mesh).volume), 0.0, 1e-12);  // a single triangle
     return mesh.vertices.at(1);
   };
   const std::string triangle = "POINTS 3 float\n0 0 0 1 2 3 0 1 0\nPOLYGONS 1 4\n3 0 1 2\n";
@@ -159,9 +159,9 @@ TEST(Vtk, SpaceIsAsAskedElseAsTheFileSaysElseRas) {
       Vec3(-1, -2, 3));
 }
 
-// Slicer smoothed and decimated its models, which drew a few vertices in at tips and rims: of these
-// four 1 to 11 of some 7000 are more than a voxel off, as they are when read by other means;
-// nothing is by half a voxel more.
+// Slicer smoothed and decimated its models, which pulled a few vertices inwards at tips and rims.
+// In these four, 1 to 11 of some 7000 vertices are more than a voxel off (also when another program
+// reads them), and none is off by half a voxel more.
 TEST(Vtk, ModelsOfTheHeadLieOnTheirLabels) {
   const std::string folder = palpate::testing::scanPath("head_neck/");
   PALPATE_NEEDS_SCAN(folder);
@@ -177,8 +177,8 @@ TEST(Vtk, ModelsOfTheHeadLieOnTheirLabels) {
     EXPECT_NE(file.find(names.at(label)), std::string::npos);
     const Mesh mesh = readMesh(entry.path().string(), 1e-3);
     EXPECT_EQ(checkMesh(mesh).degenerate_triangles, 0U);
-    // How far a vertex is, along one axis at least, from a change between the label and what is not
-    // [voxels].
+    // [voxels] Distance of a vertex, along at least one axis, from a face between the label and
+    // another value.
     std::vector<double> off;
     for (const Vec3& v : mesh.vertices) {
       const Vec3 index = labels.toIndex(v);

@@ -1,4 +1,4 @@
-// Narrow bands made wider: against the band that a bake of that width has.
+// Narrow bands made wider, compared with the band that a bake of that width makes.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ TEST(Widen, ABandOfThreeVoxelsBecomesTheOneOfSix) {
     float value = 0.0F;
     const openvdb::Coord at = voxel.getCoord();
     if (!new_voxels.probeValue(at, value)) {
-      ++missing;  // at the very rim a rounding decides
+      ++missing;  // at the very rim rounding decides
       continue;
     }
     if (old_voxels.isValueOn(at)) {
@@ -47,12 +47,13 @@ TEST(Widen, ABandOfThreeVoxelsBecomesTheOneOfSix) {
   }
   EXPECT_LT(missing, wide.info().active_voxels / 1000);
   EXPECT_LT(widened_set.info().active_voxels, wide.info().active_voxels * 1001 / 1000);
-  // [voxels] Closest points on a spline that is off by 0.037 r (h / r)^4 at r/h = 12: 2e-5 voxels.
-  // A few voxels whose Newton steps do not converge keep their first guess, tenths of a voxel off.
+  // [voxels] Closest points on a spline with an error of 0.037 r (h / r)^4 at r/h = 12: 2e-5
+  // voxels. A few voxels whose Newton steps do not converge keep their first guess, tenths of a
+  // voxel off.
   EXPECT_LT(std::sqrt(square / static_cast<double>(count)), 3e-3);
 
   const FieldPtr by_wide = gridField(wide);
-  const FieldPtr by_widened = gridField(narrow);  // widens for itself
+  const FieldPtr by_widened = gridField(narrow);  // widens the band by itself
   Random random(3);
   double normal_square = 0.0;
   int checked = 0;
@@ -65,14 +66,15 @@ TEST(Widen, ABandOfThreeVoxelsBecomesTheOneOfSix) {
     ASSERT_TRUE(a.in_band && b.in_band);
     normal_square += glm::dot(a.gradient - b.gradient, a.gradient - b.gradient);
   }
-  // [radian] 0.0005 degree; OpenVDB's dilateSdf leaves 0.00086, the spline itself is off by 0.0003.
+  // [radian] 0.0005 degree; OpenVDB's dilateSdf has 0.00086, the spline itself 0.0003.
   EXPECT_LT(std::sqrt(normal_square / checked), 9e-6);
 }
 
 TEST(Widen, OutsideSharpEdgesItClaimsNoRoomThatIsNotThere) {
-  // The spline rounds the edges off, so that closest points there are guesses; contact may leap
-  // only as far as values say. Half a voxel is what three layers of steps to 26 neighbors are
-  // longer than straight ways, and where two walls meet inside.
+  // The spline rounds the edges off, so that closest points there are guesses; but values must not
+  // exceed the free space, or contact could jump through a wall. Half a voxel is allowed: paths of
+  // three layers of steps to 26 neighbors are that much longer than straight lines, and it also
+  // occurs where two walls meet inside.
   const FieldPtr solid = palpate::box(Vec3(0.1e-3, 0.2e-3, 0.3e-3), Vec3(40e-3, 30e-3, 20e-3));
   constexpr double kVoxel = 1e-3;
   const LevelSet widened_set = widened(bake(*solid, voxels(kVoxel, 3.0)), 6.0);

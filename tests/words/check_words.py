@@ -15,7 +15,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 READ = {".h", ".cpp", ".md", ".py", ".sh", ".cmake", ".yaml", ".yml", ".txt", ".in", ".cff"}
 CODE = {".h", ".cpp"}
-# Texts that quote the words that are wrong, and names that others gave.
+# Files that quote wrong words, or contain names that others gave.
 LEFT_OUT = ("tests/words/", "data/materials/names.yaml", "LICENSE")
 TOKENS = re.compile(
     r'R"([^(\s]*)\((?:.|\n)*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|//[^\n]*|/\*(?:.|\n)*?\*/')
@@ -77,7 +77,7 @@ def main(given):
             wrong += 1
         pages.append((path, text.count("\n") + 1))
         texts.append(text)
-    # One run over all: to start codespell takes longer than to read a page.
+    # One run over everything, because codespell takes longer to start than to read a page.
     ends = []
     for path, lines in pages:
         ends.append((path, (ends[-1][1] if ends else 0) + lines))

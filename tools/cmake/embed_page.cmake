@@ -1,6 +1,7 @@
 # cmake -D PAGE=folder -D OUT=file.cpp -P embed_page.cmake
-# Writes the source that has the files of the page in it: pageFiles() of tools/src/view/page_files.h. Of a folder without a page
-# (index.html), which tools/page/build.sh makes, it has none. Written only when something is new.
+# Writes a source file that contains the files of the page: pageFiles() of
+# tools/src/view/page_files.h. If the folder holds no page (index.html, made by
+# tools/page/build.sh), the source contains none. Written only if something is new.
 cmake_minimum_required(VERSION 3.25)
 
 set(types ".html" text/html ".js" text/javascript ".css" text/css ".svg" image/svg+xml ".txt" text/plain)
@@ -25,7 +26,7 @@ foreach(file IN LISTS files)
   file(SHA256 "${PAGE}/${file}" hash)
   file(SIZE "${PAGE}/${file}" size)
   set(name palpate_page_${number})
-  # The hash makes the compiler look again when the file is another.
+  # The hash makes the compiler run again when the file has changed.
   string(APPEND blocks "// ${file} ${hash}\n"
     "asm(\".section .rodata\\n.global ${name}\\n${name}:\\n.incbin \\\"${PAGE}/${file}\\\"\\n.byte 0\\n.previous\\n\");\n"
     "extern \"C\" const char ${name}[];\n")

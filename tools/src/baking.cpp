@@ -27,7 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Options that make no sense for this kind of input are refused, not ignored.
+/// Refuses options that make no sense for this kind of input, instead of ignoring them.
 void refuse(bool given, const char* option, const char* applies_to) {
   if (given) throw bakeUsageError(std::string(option) + " applies to " + applies_to);
 }
@@ -38,7 +38,7 @@ void refuseMeshOptions(const BakeOptions& options) {
   refuse(options.smooth.has_value(), "--smooth", "meshes");
 }
 
-/// [bytes] What these take.
+/// [bytes] Memory of these grids.
 std::uint64_t memoryOf(const std::vector<BakedGrid>& grids) {
   std::uint64_t memory = 0;
   for (const BakedGrid& one : grids) memory += one.grid.info().memory;
@@ -54,8 +54,8 @@ BakedGrid timed(Make&& make) {
   return baked;
 }
 
-/// The description without what the layers asked for do not depend on. Labels of one image share
-/// it, so they stay together; nothing is entered, so ports and walls go.
+/// The description without the parts that the requested layers do not depend on. Layers of labels
+/// that share an image stay together; nothing is entered, so ports and walls are removed.
 SceneDescription neededFor(const BakeOptions& options, SceneDescription description) {
   std::set<std::string> groups;
   for (const auto& layer : description.layers) {
@@ -71,7 +71,7 @@ SceneDescription neededFor(const BakeOptions& options, SceneDescription descript
   return description;
 }
 
-/// The maps of the layers asked for, and, where all are, of the ports.
+/// Adds the maps of the requested layers, and, if all layers are requested, of the ports.
 void addMaterials(const BakeOptions& options, const SceneDescription& description,
                   std::vector<vdb::NamedMaterialGrid>& materials) {
   for (const SceneParameter& found : sceneParameters(description)) {
@@ -104,7 +104,7 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console,
     const std::string source =
         region.source.empty() ? options.input : options.input + ": " + region.source;
     grids.push_back(timed([&] {
-      // What comes from a grid has a voxel size already.
+      // A field that comes from a grid has a voxel size already.
       const double voxel = asked > 0.0              ? asked
                            : !region.source.empty() ? region.field->featureSize()
                                                     : defaultVoxel(unit, region.field->bounds(),
@@ -155,7 +155,8 @@ std::vector<BakedGrid> bakeMeshFile(const BakeOptions& options, Console& console
   })};
 }
 
-/// 7, a name, a pattern, or of a range 5-28 what the image holds.
+/// The labels that an entry means: 7, a name, a pattern, or those of a range 5-28 that the image
+/// holds.
 std::vector<int> labelsIn(const std::string& entry, const vdb::NameTable& names,
                           const std::string& source, const vdb::Image& image) {
   const bool is_range = entry.find('-') != std::string::npos;
@@ -172,7 +173,7 @@ std::vector<int> labelsIn(const std::string& entry, const vdb::NameTable& names,
   return values;
 }
 
-/// The labels asked for, as layers: a name for each set of values, in the order asked.
+/// The requested labels as layers: a name for each set of values, in the order of the request.
 std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOptions& options,
                                                                   const vdb::Image& image) {
   const bool is_grid = inputKind(options.input) == InputKind::kGrid;
@@ -198,13 +199,14 @@ std::vector<std::pair<std::string, std::vector<int>>> labelLayers(const BakeOpti
   return layers;
 }
 
-/// What the grid could not hold of the scan.
+/// Reports the parts of the scan that the grid could not hold.
 void tellLoss(const BakeOptions& options, const vdb::LevelSet& grid, Console& console) {
   const std::string note = vdb::scanLossNote(grid.info());
   if (!note.empty()) console.note(options.input + ": " + grid.info().name + ": " + note);
 }
 
-/// Are the values of `image` distances in mm? @throws Error if nothing is inside, or all is.
+/// Checks that the values of `image` are distances in mm. @throws Error if nothing is inside, or
+/// everything.
 void checkDistances(const BakeOptions& options, const vdb::Image& image, Console& console) {
   const std::optional<double> slope = vdb::slopeAtZero(image);
   if (!slope) {
@@ -219,7 +221,7 @@ void checkDistances(const BakeOptions& options, const vdb::Image& image, Console
   }
 }
 
-/// What --above takes for the inside is the outside of an image of distances.
+/// Warns that in an image of distances --above takes the outside for the inside.
 void tellDistances(const BakeOptions& options, const vdb::Image& image, Console& console) {
   const std::string note = vdb::distancesNote(image);
   if (!note.empty()) console.note(options.input + ": " + note + "; --distances takes the inside");
@@ -287,7 +289,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     tellLoss(options, grids.back().grid, console);
   }
   if (layers.size() < 2) return grids;
-  // Where labels meet, the one grid of all says what is in none of them.
+  // Where labels meet, the one grid of all labels tells which points are in none of them.
   vdb::BakeOptions whole =
       gridOptions(options, "united", voxel, unit, options.input, memoryOf(grids));
   whole.name = kUnitedGrid;

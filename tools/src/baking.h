@@ -1,5 +1,5 @@
 #pragma once
-/// Whatever can be baked, as grids: what `bake` writes and `convert` takes further.
+/// Bakes every kind of input to grids: `bake` writes them, and `convert` processes them further.
 
 #include <vector>
 
@@ -13,11 +13,11 @@ namespace palpate::tools {
 struct BakedGrid {
   vdb::LevelSet grid;
   double seconds = 0.0;
-  FieldPtr analytic = {};  ///< what it was made of, if that was not a grid, mesh or image
+  FieldPtr analytic = {};  ///< the field it was made from, if that was not a grid, mesh or image
 };
 
 /// The grid of all labels together. A point belongs to the label whose grid has the smallest value
-/// there, or to none if the opposite of this grid's is smaller: no gap, no overlap
+/// there, or to none if the negative of this grid's value is smaller still: no gap, no overlap
 /// (vdb::LabelSurfaces).
 inline constexpr const char* kUnitedGrid = "united";
 

@@ -36,7 +36,7 @@ double askedOf(const BudgetItem& each) {
 }
 
 const char* nameOf(BudgetTerm term) { return term == BudgetTerm::kFriction ? "encoder" : "linear"; }
-/// What decides; of a drag the friction does not.
+/// The rule that decides the budget; encoder friction does not limit a drag.
 const char* ruleOf(const BudgetItem& each) {
   return nameOf(isSpring(each) ? each.budget.ruledBy() : BudgetTerm::kLinear);
 }
@@ -52,7 +52,7 @@ std::string sizeOf(double share) {
   return std::isfinite(share) ? formatNumber(share, 3) + " times its budget" : "beyond any budget";
 }
 
-/// How to get below the budget, one way after the other.
+/// Ways to get below the budget, listed one after another.
 std::string cures(const BudgetItem& each) {
   std::string text;
   const auto add = [&](bool given, const std::string& part) {

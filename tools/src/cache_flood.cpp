@@ -7,7 +7,7 @@
 namespace palpate::tools {
 namespace {
 
-constexpr std::size_t kLine = 64;              ///< [bytes] of a cache
+constexpr std::size_t kLine = 64;              ///< [bytes] of a cache line
 constexpr std::size_t kLeastFlood = 24 << 20;  ///< [bytes]
 
 std::size_t floodBytes() {

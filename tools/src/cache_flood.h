@@ -1,12 +1,12 @@
 #pragma once
-/// Times of what is met cold: other data went through the caches before.
+/// For timing cold queries: sends other data through the caches.
 
 #include <cstddef>
 #include <vector>
 
 namespace palpate::tools {
 
-/// A buffer larger than the caches, to push everything else out of them.
+/// A buffer larger than the caches, which pushes everything else out of them.
 class CacheFlood {
  public:
   CacheFlood();

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the command keeps what takes long to make again.
+/// The folder in which the command keeps results that take long to make again.
 
 #include <string>
 
@@ -7,15 +7,15 @@
 
 namespace palpate::tools {
 
-/// Of the grids of scenes above all (vdb/README.md, "Kept grids"). $PALPATE_CACHE; else
+/// Mainly for the grids of scenes (vdb/README.md, "Kept grids"). $PALPATE_CACHE; else
 /// $XDG_CACHE_HOME/palpate, else $HOME/.cache/palpate. Empty, which means nowhere, if the first is
 /// "off" or none is an absolute path.
 [[nodiscard]] std::string cacheFolder();
 
-/// From now on it is nowhere (--no-cache).
+/// From now on nothing is kept (--no-cache).
 void keepNothing() noexcept;
 
-/// The bundle that all scenes fill which are loaded from now on; an empty folder: none.
+/// Sets the bundle that all scenes loaded from now on fill; an empty folder: none.
 void fillBundle(const std::string& grids);
 [[nodiscard]] vdb::BundleOptions bundleToFill();
 

@@ -1,5 +1,5 @@
 #pragma once
-/// argv -> what to do. The only place that knows the option parser.
+/// Parses the command line. The only code that uses the option parser.
 
 #include <string>
 #include <vector>
@@ -10,14 +10,14 @@
 namespace palpate::tools {
 
 struct Invocation {
-  std::string verb;  ///< empty if only `print` is wanted
+  std::string verb;  ///< empty if only `print` has to be printed
   GeneralOptions general;
-  bool no_cache = false;  ///< of verbs that make the grids of scenes
+  bool no_cache = false;  ///< for verbs that make the grids of scenes
   AnyOptions options;
-  std::string print;  ///< help or version: to stdout, and nothing else is done
+  std::string print;  ///< help or version: goes to stdout, and nothing else is done
 };
 
-/// @throws Error (kUsage) that names what is wrong, with a suggestion where a slip is likely.
+/// @throws Error (kUsage) that names the fault, with a suggestion where a typing error is likely.
 [[nodiscard]] Invocation parseCommandLine(const std::vector<std::string>& arguments);
 
 /// What `palpate help`, `palpate help VERB` and `palpate help --markdown` print.

@@ -11,8 +11,8 @@
 namespace palpate::tools {
 namespace {
 
-constexpr auto kQuietStart = std::chrono::seconds(2);    // shorter work is not worth a line
-constexpr auto kLineInterval = std::chrono::seconds(4);  // between lines in a log
+constexpr auto kQuietStart = std::chrono::seconds(2);    // shorter work gets no line
+constexpr auto kLineInterval = std::chrono::seconds(4);  // between two lines in a log
 constexpr auto kBarInterval = std::chrono::milliseconds(80);
 constexpr int kBarWidth = 28;
 

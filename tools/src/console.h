@@ -1,5 +1,5 @@
 #pragma once
-/// Talk and progress on stderr. Results never come here; they are the only thing on stdout.
+/// Messages and progress on stderr. Results never go here; stdout carries nothing but them.
 
 #include <chrono>
 #include <set>
@@ -17,15 +17,16 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// Something assumed or worth knowing; the same note is printed once. Silent with --quiet.
+  /// An assumption, or something worth knowing; the same note is printed only once. Silent with
+  /// --quiet.
   void note(const std::string& text);
-  /// Something that the user cannot do without; told even with --quiet.
+  /// Something that the user needs to know; printed even with --quiet.
   void say(const std::string& text);
-  /// Something that went wrong without stopping the work; told even with --quiet.
+  /// Something that went wrong without stopping the work; printed even with --quiet.
   void warn(const std::string& text);
 
-  /// A bar on a terminal; elsewhere a line now and then once the work has lasted. Stops the work
-  /// when a stop was asked for. Must not outlive the console.
+  /// A bar on a terminal; elsewhere a line from time to time once the work takes longer. Ends the
+  /// work when the user asked to stop. Must not outlive the console.
   [[nodiscard]] Progress progress();
 
  private:
@@ -41,7 +42,7 @@ class Console {
   std::set<std::string> told_;
 };
 
-/// Throws kCancelled if a stop was asked for.
+/// Throws kCancelled if the user asked to stop.
 void checkStop();
 
 }  // namespace palpate::tools

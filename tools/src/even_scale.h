@@ -1,5 +1,5 @@
 #pragma once
-/// A plot's axis with round numbers at even steps, and the plot's grid, as SVG.
+/// A linear axis of a plot with round numbers at even steps, and the plot's grid, as SVG.
 
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace palpate::tools {
 
-/// A stretch of the page for values from `least` to `most`, widened to whole steps.
+/// Maps values from `least` to `most`, widened to whole steps, to an interval of the page.
 struct EvenScale {
   double least = 0.0;
   double most = 1.0;
@@ -15,16 +15,16 @@ struct EvenScale {
   double to = 1.0;
   double step = 1.0;
 
-  /// About `steps` of them.
+  /// With about `steps` steps.
   EvenScale(double lowest, double highest, double begin, double end, double steps = 8.0);
   [[nodiscard]] double at(double value) const {
     return from + (to - from) * (value - least) / (most - least);
   }
-  [[nodiscard]] int count() const;           ///< of steps
-  [[nodiscard]] double number(int i) const;  ///< at the end of the i-th
+  [[nodiscard]] int count() const;           ///< number of steps
+  [[nodiscard]] double number(int i) const;  ///< value at the end of the i-th step
 };
 
-/// Grid lines, their numbers, and what they mean.
+/// Grid lines with their numbers and titles.
 [[nodiscard]] std::string evenAxes(const Frame& frame, const EvenScale& x, const EvenScale& y,
                                    const std::string& x_label, const std::string& y_label);
 

@@ -29,7 +29,7 @@ std::string askedName(const BakeOptions& options) {
   return gridName(options.input, options.layers.empty() ? "" : options.layers.front());
 }
 
-/// What is known of the grid without its voxels; nothing if there is none.
+/// A summary of the grid, read without its voxels; nothing if there is no such grid.
 std::optional<vdb::VdbGridSummary> summaryOf(const BakeOptions& options, const std::string& name) {
   for (vdb::VdbGridSummary& grid : vdb::listVdb(options.input)) {
     if (name.empty() || grid.name == name) return std::move(grid);
@@ -37,7 +37,7 @@ std::optional<vdb::VdbGridSummary> summaryOf(const BakeOptions& options, const s
   return {};
 }
 
-/// "liver" for "liver/surface"; the file's name for a grid without one.
+/// "liver" for "liver/surface"; the file's name for a grid without a name.
 std::string layerOf(const std::string& grid, const BakeOptions& options) {
   constexpr std::string_view kEnd = "/surface";
   if (grid.empty()) return stemOf(options.input);
@@ -64,8 +64,8 @@ double voxelOr(const BakeOptions& options, const std::string& unit, double fallb
   return voxel;
 }
 
-/// A level set whose voxels are not cubes along the axes: the surface where its interpolated
-/// distances pass zero, in new voxels.
+/// For a level set whose voxels are not cubes along the axes: makes new voxels from the surface
+/// where its interpolated distances pass zero.
 vdb::LevelSet straightened(const BakeOptions& options, Console& console) {
   const auto grid = summaryOf(options, askedName(options));
   const std::string name = grid ? grid->name : "";
@@ -150,7 +150,7 @@ BakedGrid rebakeGrid(const BakeOptions& options, Console& console) {
           ".nii.gz can be written too");
     }
     const double voxel = voxelOr(options, info.length_unit, 0.0);
-    // The new band, and what a cubic sample at its rim depends on.
+    // The half width of the new band, plus the reach of a cubic sample at its rim.
     const double band = options.half_width * voxel / info.voxel_size + vdb::kCubicHalfWidth;
     const FieldPtr field = vdb::gridField(vdb::widened(read.grid, band, console.progress()));
     baked.grid = vdb::bake(*field, bakeOptions(options, info.name, info.length_unit, voxel),

@@ -15,12 +15,13 @@
 namespace palpate::tools {
 namespace {
 
-/// So few different whole values are labels, though nothing says so.
+/// An image with at most so many different integers counts as labels, even if its file does not say
+/// so.
 constexpr std::size_t kFewValues = 64;
-/// More than these are not counted.
+/// If there are more different values than this, they are not counted.
 constexpr std::size_t kMostValues = 65536;
 
-/// In the words of a radiologist's axes: "right", "left", ...
+/// The directions of the axes in a radiologist's words: "right", "left", ...
 std::string axisWords(const std::string& orientation) {
   std::string text;
   for (const char c : orientation) {
@@ -36,7 +37,7 @@ std::string axisWords(const std::string& orientation) {
   return text;
 }
 
-/// How often each value comes; nothing if they are not whole or too many.
+/// The number of voxels of each value; nothing if values are not integers, or too many differ.
 std::optional<std::map<int, std::size_t>> countValues(const std::vector<float>& values) {
   constexpr float kLargest = 1e9F;
   std::map<int, std::size_t> counts;
@@ -52,8 +53,9 @@ std::optional<std::map<int, std::size_t>> countValues(const std::vector<float>& 
   return counts;
 }
 
-/// Whole values that are not gray: none is below 0, and a voxel beside another that is not 0 mostly
-/// has its value. A parcel is more than a few voxels wide, and gray values have noise.
+/// Whether integer values are labels rather than gray values: none is below 0, and a voxel next to
+/// another one that is not 0 mostly has the same value. A parcel is more than a few voxels wide,
+/// while gray values have noise.
 bool lookLikeLabels(const std::vector<float>& values) {
   constexpr double kSame = 0.7;
   std::size_t pairs = 0;
@@ -117,7 +119,7 @@ void addValues(const std::vector<float>& values, FileReport& out) {
 }
 
 std::string rowText(const Mat3& axes, const Vec3& origin, int row) {
-  constexpr double kPlusZero = 0.0;  // added to -0 it is 0
+  constexpr double kPlusZero = 0.0;  // adding it turns -0 into 0
   char text[128];
   std::snprintf(text, sizeof text, "%12.6g %12.6g %12.6g %12.6g", axes[0][row] * 1e3 + kPlusZero,
                 axes[1][row] * 1e3 + kPlusZero, axes[2][row] * 1e3 + kPlusZero,

@@ -1,5 +1,5 @@
 #pragma once
-/// What `palpate info` says of a file.
+/// The report of `palpate info` on a file.
 
 #include <string>
 
@@ -19,8 +19,8 @@ struct FileReport {
 /// "x y z to x y z mm"; `unit` [m].
 [[nodiscard]] std::string boxText(const Box3& box, double unit, const std::string& name);
 
-/// A scan: its place in space, its values, and its labels with their names and how many voxels each
-/// has.
+/// Reports on a scan: its place in space, its values, and its labels with their names and numbers
+/// of voxels.
 [[nodiscard]] FileReport imageReport(const std::string& file, const InfoOptions& options,
                                      Console& console);
 

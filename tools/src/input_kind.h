@@ -1,5 +1,5 @@
 #pragma once
-/// What a file is, by its name.
+/// The kind of a file, judged by its name.
 
 #include <string>
 
@@ -14,6 +14,6 @@ enum class InputKind { kScene, kGrid, kMesh, kImage };
 /// `path` without folder and extensions: "ch2" for "a/ch2.nii.gz".
 [[nodiscard]] std::string stemOf(const std::string& path);
 
-/// True if `path` ends with `extension` (".png"), in any case.
+/// True if `path` ends with `extension` (".png"), in upper or lower case.
 
 }  // namespace palpate::tools

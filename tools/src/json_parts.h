@@ -1,5 +1,5 @@
 #pragma once
-/// Pieces of JSON that several verbs print.
+/// JSON values that several verbs print.
 
 #include <cmath>
 
@@ -18,8 +18,8 @@ namespace palpate::tools {
   return {{"lo", vectorJson(box.lo)}, {"hi", vectorJson(box.hi)}};
 }
 
-/// The number; of one that differs from place to place {"least": .., "most": ..}, or, if a point is
-/// given [m], its value there.
+/// The number. If it varies from place to place: {"least": .., "most": ..}, or, if a point [m] is
+/// given, its value there.
 [[nodiscard]] inline Json parameterJson(const Parameter& parameter, const Vec3* at = nullptr) {
   if (at != nullptr) return parameter.at(*at);
   const MaterialMap::Range range = parameter.range();
@@ -33,7 +33,7 @@ namespace palpate::tools {
           {"damping_Ns_per_m2", parameterJson(way.damping, at)}};
 }
 
-/// What a map of voxels is made from, and how it is stored.
+/// The source of a map of voxels, and how it is stored.
 [[nodiscard]] inline Json mapJson(const vdb::MaterialGrid& grid) {
   const vdb::MaterialGridInfo& info = grid.info();
   return {{"source", info.source},           {"least", grid.range().least},

@@ -1,5 +1,5 @@
 #pragma once
-/// Labels as options name them.
+/// Labels in the form that options use.
 
 #include <charconv>
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace palpate::tools {
 
-/// First and last of "5-28", or twice the number of "7"; nothing for what is neither.
+/// First and last of "5-28"; twice the number for "7"; nothing for any other text.
 [[nodiscard]] inline std::optional<std::pair<int, int>> labelRange(std::string_view text) {
   const auto whole = [](std::string_view part) -> std::optional<int> {
     int value = 0;

@@ -38,7 +38,7 @@ LoadedScene::LoadedScene(const std::string& file, Console& console, std::uint64_
   }
   vdb::registerKinds(registry, options, bundle);
 
-  // Pictures want the scans themselves, so the entries are noted down on their way through.
+  // Pictures need the scans themselves, so this records the entries as they are read.
   registry.image = [this, &image, inner = registry.image](MapReader& reader) {
     auto made = inner(reader);
     for (const auto& entry : reader.loader().document().root.entries) {

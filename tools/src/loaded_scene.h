@@ -1,5 +1,5 @@
 #pragma once
-/// A scene file read with everything palpate::vdb can read, and what its grids cost.
+/// A scene file, read with every kind that palpate::vdb adds, and the cost of its grids.
 
 #include <functional>
 #include <map>
@@ -20,15 +20,15 @@ struct SceneImage {
   std::string name;
   std::string file;           ///< as this process can open it
   vdb::ImageOptions options;  ///< how the scene reads it
-  bool has_names = false;     ///< a label image, not gray values
+  bool has_names = false;     ///< true for a label image, false for gray values
 };
 
-/// Stays where it is: the description's sources report back to it.
+/// Neither copied nor moved: the description's sources report back to it.
 class LoadedScene {
  public:
-  /// Reads the file; makes nothing yet. @throws Error (kInput).
+  /// Reads the file; makes no grid yet. @throws Error (kInput).
   /// `max_memory` [bytes] of each grid; 0: the library's own limit.
-  /// `text`: of the scene, if `file` does not hold it itself (a mesh, say).
+  /// `text`: the text of the scene, if `file` does not hold it itself (a mesh, say).
   LoadedScene(const std::string& file, Console& console, std::uint64_t max_memory = 0,
               const std::string& text = {});
   LoadedScene(const LoadedScene&) = delete;
@@ -37,7 +37,7 @@ class LoadedScene {
   [[nodiscard]] const SceneDescription& description() const noexcept { return description_; }
   [[nodiscard]] LengthUnit unit() const;
   [[nodiscard]] const std::vector<SceneImage>& images() const noexcept { return images_; }
-  /// Of layers that come from labels with a color.
+  /// The colors of layers that come from labels with a color.
   [[nodiscard]] const std::map<std::string, vdb::LabelColor>& colors() const noexcept {
     return colors_;
   }
@@ -48,8 +48,8 @@ class LoadedScene {
 
   [[nodiscard]] Json gridsJson() const;
   [[nodiscard]] Table gridsTable() const;
-  [[nodiscard]] std::string gridsText() const;  ///< empty if there is none; lossText() at its end
-  /// What grids could not hold of scans, a line for each; empty if nothing was lost.
+  [[nodiscard]] std::string gridsText() const;  ///< empty if there is none; ends with lossText()
+  /// The parts of scans that grids could not hold, one line each; empty if nothing was lost.
   [[nodiscard]] std::string lossText() const;
 
  private:

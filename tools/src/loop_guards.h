@@ -1,5 +1,5 @@
 #pragma once
-/// Passivity and a virtual coupling, as the options of a touch and its scene ask for them.
+/// The passivity controller and the virtual coupling that a touch's options and its scene ask for.
 
 #include <optional>
 #include <string>
@@ -11,12 +11,13 @@
 
 namespace palpate::tools {
 
-/// What --passivity, --hand-force and --coupling say, and else `mapping`, the scene's `device`;
-/// without --device the numbers have to be in the scene, or in --coupling. @throws Error (kUsage).
+/// From --passivity, --hand-force and --coupling, or else from `mapping`, the scene's `device`.
+/// Without --device, their numbers have to be in the scene, or in --coupling. @throws Error
+/// (kUsage).
 [[nodiscard]] devices::HandGuards guardsOf(const TouchOptions& options, DeviceMapping mapping,
                                            const std::optional<devices::LoopModel>& loop);
 
-/// After a run: what was given, and what it costs; null or empty where nothing was asked for.
+/// After a run: the settings and what they cost; null or empty if none was asked for.
 [[nodiscard]] Json guardsJson(const devices::HandGuards& guards, const devices::Session& session);
 [[nodiscard]] std::string guardsText(const devices::HandGuards& guards,
                                      const devices::Session& session);

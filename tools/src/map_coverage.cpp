@@ -10,9 +10,10 @@
 namespace palpate::tools {
 namespace {
 
-constexpr int kSide = 17;             ///< places along each side of a box
-constexpr double kWhole = 0.995;      ///< [share] the rest is the half voxel of a rim
-constexpr double kStrangeRatio = 50;  ///< of sizes: a unit may be wrong
+constexpr int kSide = 17;  ///< sample places along each side of a box
+/// [share] Less than 1, because up to half a voxel may be missing at the rim
+constexpr double kWhole = 0.995;
+constexpr double kStrangeRatio = 50;  ///< ratio of sizes above which a unit may be wrong
 
 template <typename Visit>
 void eachPlace(const Box3& box, const Visit& visit) {
@@ -39,12 +40,12 @@ double distanceBetween(const Box3& a, const Box3& b) {
   return glm::length(gap);
 }
 
-/// Half a voxel beyond the outermost centers is the map's still.
+/// The map's box extends half a voxel beyond its outermost centers.
 Box3 reachOf(const vdb::MaterialGridInfo& info) {
   return info.bounds.grownBy(0.5 * info.voxel_size);
 }
 
-/// How much of the region lies within the map.
+/// How much of the region is within the map.
 MapGap gapOf(const Scene& scene, RegionId region, const SceneParameter& found,
              const vdb::MaterialGridInfo& info) {
   MapGap gap{found.name(), info.source};
@@ -61,7 +62,8 @@ MapGap gapOf(const Scene& scene, RegionId region, const SceneParameter& found,
       ++places;
       within += map.contains(p) ? 1U : 0U;
     });
-    // A layer thinner than the places stand apart: its box has to do.
+    // No sample place is in the layer, because it is thinner than the spacing: sample its whole
+    // box.
     if (places == 0) {
       eachPlace(bounds, [&](const Vec3& p) {
         ++places;
@@ -69,7 +71,7 @@ MapGap gapOf(const Scene& scene, RegionId region, const SceneParameter& found,
       });
     }
     gap.share = static_cast<double>(within) / static_cast<double>(places);
-    // A small map may lie between the places.
+    // A small map may lie between the sample places.
     if (within == 0 && gap.away <= 0.0) {
       eachPlace(map, [&](const Vec3& p) {
         if (field->value(p) <= 0.0) gap.share = 1e-6;
@@ -77,7 +79,7 @@ MapGap gapOf(const Scene& scene, RegionId region, const SceneParameter& found,
     }
     return gap;
   }
-  // A layer without end has no share, only whether the map lies in it at all.
+  // An unbounded layer has no share; the only question is whether the map reaches it at all.
   double nearest = kInfinity;
   eachPlace(map, [&](const Vec3& p) { nearest = std::min(nearest, field->value(p)); });
   gap.share = nearest <= 0.0 ? 1.0 : 0.0;
@@ -85,7 +87,7 @@ MapGap gapOf(const Scene& scene, RegionId region, const SceneParameter& found,
   return gap;
 }
 
-/// The regions whose places count for a parameter of `owner`, a layer or a port.
+/// The regions whose sample places count for a parameter of `owner`, a layer or a port.
 std::set<RegionId> regionsOf(const Scene& scene, const std::string& owner) {
   std::set<RegionId> all;
   for (std::size_t i = 1; i < scene.regions().size(); ++i) {
@@ -95,7 +97,7 @@ std::set<RegionId> regionsOf(const Scene& scene, const std::string& owner) {
     if (port.name != owner) continue;
     for (const RegionId from : port.from) {
       for (const RegionId to : port.to) {
-        // The wall between two layers is the later one's.
+        // The wall between two layers belongs to the later one.
         if (scene.touches(from, to)) all.insert(std::max(from, to));
       }
     }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 
-/// Bytes of the character at the front; 0 if it is not UTF-8 or XML may not hold it.
+/// Number of bytes of the character at the front; 0 if it is not UTF-8, or not allowed in XML.
 std::size_t characterLength(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i]));

@@ -1,13 +1,13 @@
 #pragma once
-/// Text of anybody as text of an SVG or HTML file.
+/// Any text as text of an SVG or HTML file.
 
 #include <string>
 #include <string_view>
 
 namespace palpate::tools {
 
-/// `text` with <, >, &, " and ' written as references, fit between tags and between quotes. What is
-/// not UTF-8, and control characters that XML forbids, become U+FFFD.
+/// `text` with <, >, &, " and ' written as references, safe between tags and between quotes. Bytes
+/// that are not UTF-8, and control characters that XML forbids, become U+FFFD.
 [[nodiscard]] std::string markupText(std::string_view text);
 
 /// `bytes` in base 64.

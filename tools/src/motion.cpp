@@ -14,7 +14,8 @@
 namespace palpate::tools {
 namespace {
 
-// No sensible path is longer; a slip in --hold or --speed must not run for hours, or fill the disk.
+// No sensible path is longer; a mistake in --hold or --speed must not run for hours, or fill the
+// disk.
 constexpr double kLongestPath = 20e6;  // [ticks], 5.5 hours at 1 kHz
 
 Error usageError(std::string message, std::string hint = {}) {

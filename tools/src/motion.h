@@ -1,5 +1,5 @@
 #pragma once
-/// The hand's motion that `touch` was asked for.
+/// The motion of the hand that the options of `touch` describe.
 
 #include <optional>
 
@@ -9,25 +9,25 @@
 
 namespace palpate::tools {
 
-/// Exactly one motion, or none where a hand moves the device, and only parameters that apply to it.
-/// @throws Error (kUsage).
+/// Checks that there is exactly one motion, or none where a hand moves the device, and that all
+/// parameters apply to it. @throws Error (kUsage).
 void checkMotion(const TouchOptions& options);
 
-/// A hand's motion: of a file, or by a formula.
+/// A hand's motion: from a file, or by a formula.
 struct Motion {
   devices::RecordedPath recorded;
-  devices::PathRules rules = devices::PathRules::kSound;  ///< of `recorded`
+  devices::PathRules rules = devices::PathRules::kSound;  ///< for `recorded`
   std::optional<devices::PathFormula> formula;            ///< none: `recorded` is the motion
   double begin = 0.0;   ///< [s] of the first row whose time is a number
-  double end = 0.0;     ///< [s] of the last one
+  double end = 0.0;     ///< [s] time of the last such row
   double period = 0.0;  ///< [s] from tick to tick
 };
 
-/// @throws Error: kUsage for values, kInput for the path file.
+/// @throws Error: kUsage for wrong values, kInput for a faulty path file.
 [[nodiscard]] Motion makeMotion(const TouchOptions& options, const LengthUnit& unit);
 
-/// [s] from tick to tick: what half of the path's steps do not exceed, so that gaps in it do not
-/// count, nor times that do not rise. Of a path without a step, 1 / `rate` [Hz].
+/// [s] Time from tick to tick: the median of the path's steps, so that gaps do not count, nor times
+/// that do not rise. For a path without a step, 1 / `rate` [Hz].
 [[nodiscard]] double nominalPeriod(const devices::Path& path, double rate);
 
 }  // namespace palpate::tools

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kSimulated = "virtual:";
 
-/// The preset that a name of the command line means.
+/// The preset for a name given on the command line.
 const devices::DevicePreset& presetOf(const DeviceOptions& options) {
   if (isInputDevice(options.name)) {
     throw Error(ErrorKind::kUsage, {"usage.device", options.name + " has no motors, and no model",
@@ -30,7 +30,7 @@ const devices::DevicePreset& presetOf(const DeviceOptions& options) {
   return devices::devicePreset(is_prefixed ? options.name.substr(kSimulated.size()) : options.name);
 }
 
-/// A model of the device is known, simulated or not.
+/// Whether a model of the device is known, be the device simulated or real.
 bool hasModel(const DeviceOptions& options) {
   const std::string& name = options.name;
   return !name.empty() && name != "hd" && name != "dhd" && !isInputDevice(name);

@@ -1,6 +1,6 @@
 #pragma once
-/// What the user asked for: one plain struct a verb. Lengths and points stay text until the unit of
-/// the input is known.
+/// The user's options: one plain struct for each verb. Lengths and points stay text until the unit
+/// of the input is known.
 
 #include <cstdint>
 #include <optional>
@@ -10,15 +10,16 @@
 
 namespace palpate::tools {
 
-/// Holds for every verb.
+/// Options of every verb.
 struct GeneralOptions {
   bool json = false;
   bool quiet = false;
-  bool force = false;        ///< verbs that write files only
-  std::string command = {};  ///< as a shell takes it, for what names how it was made
+  bool force = false;  ///< only for verbs that write files
+  /// The whole command in shell syntax, for outputs that say how they were made
+  std::string command = {};
 };
 
-/// What a scan or a mesh leaves open.
+/// Facts that a scan or a mesh may not state.
 struct ScanOptions {
   std::string affine;        ///< image: "sform", "qform" or "spacing"; empty: as the file says
   std::string space;         ///< mesh, NRRD image: "RAS" or "LPS"; empty: as the file says
@@ -28,18 +29,18 @@ struct ScanOptions {
 
 /// Which device the hand holds.
 struct DeviceOptions {
-  std::string name;          ///< empty: none, the hand follows its path whatever it feels
+  std::string name;          ///< empty: none; the hand follows its path whatever it feels
   std::string hand;          ///< empty: "relaxed"
   std::optional<int> delay;  ///< [samples]
 };
 
-/// How a device that a hand holds is reached.
+/// How to reach a device that a hand holds.
 struct RealDeviceOptions {
   std::string serial;             ///< falcon; empty: the first
-  std::optional<int> descriptor;  ///< falcon: of its node, open
+  std::optional<int> descriptor;  ///< falcon: file descriptor of its open device node
   std::string firmware;           ///< falcon: image file
   std::string calibration;        ///< falcon: file of constants
-  std::string library;            ///< hd, dhd: the maker's library
+  std::string library;            ///< hd, dhd: the manufacturer's library
   std::string service;            ///< inverse3: HOST:PORT
 };
 
@@ -51,7 +52,7 @@ struct TouchOptions {
   std::vector<std::string> stroke;  ///< two points
   std::string tap;                  ///< point
   std::vector<std::string> insert;  ///< two points or more
-  // Parameters of the generators; which apply is checked in motion.cpp.
+  // Parameters of the generators; motion.cpp checks which of them apply.
   std::string normal;
   std::string depth;
   std::string clearance;
@@ -64,23 +65,24 @@ struct TouchOptions {
 
   std::string renderer;          ///< empty: as the scene says
   std::vector<std::string> set;  ///< MATERIAL.KEY=VALUE@TIME
-  // Of the paper's renderer; what is not given is as the scene says.
+  // For the paper's renderer; if not given, the scene decides.
   std::string epsilon;
   std::optional<int> halvings;
   std::optional<double> alpha;
   std::string alpha_form;  ///< "by_field", "printed" or "newton"
   std::string interior;    ///< "together" or "wall"
   bool realtime = false;
-  bool as_recorded = false;  ///< path: its faults, too
-  int states = 10000;        ///< [ticks] record: from state to state; 0: none
+  bool as_recorded = false;  ///< path: keep its faults too
+  int states = 10000;        ///< [ticks] record: interval between saved states; 0: save none
   double rate = 1000.0;      ///< [Hz]
   DeviceOptions device;
   std::string passivity;   ///< "observe" or "control"; empty: as the scene says
-  std::string hand_force;  ///< of `passivity`
+  std::string hand_force;  ///< parameter of `passivity`
   std::string
       coupling;  ///< "springs", "any_scene" or "STIFFNESS,DAMPING"; empty: as the scene says
   RealDeviceOptions real;
-  std::optional<double> seconds;  ///< [s] of a device that a hand holds; none: until a stop
+  /// [s] For a device that a hand holds; not given: until the user stops it
+  std::optional<double> seconds;
   std::string max_force;
   std::string slew;
   std::string ramp;
@@ -89,22 +91,22 @@ struct TouchOptions {
   std::string image;
   std::string plot;
 
-  // Where `scene` is a mesh, a scan or a grid.
+  // If `scene` is a mesh, a scan or a grid:
   std::optional<double> above;
   bool distances = false;  ///< image: its voxels are signed distances, negative inside
   std::vector<std::string> labels;
   std::string names;
   std::string units;
-  std::string layer;  ///< which grid of a .vdb
+  std::string layer;  ///< name of a grid in a .vdb
   std::string voxel;
   ScanOptions scan;
   std::string write_scene;
 };
 
 struct ViewOptions {
-  TouchOptions touch;  ///< scene, renderer, device, real, seconds and record only
+  TouchOptions touch;  ///< only scene, renderer, device, real, seconds and record
   std::string replay;  ///< a trace or a record; empty: a hand
-  int port = 0;        ///< 0: any that is free
+  int port = 0;        ///< 0: any free port
   bool no_open = false;
 };
 
@@ -118,7 +120,7 @@ struct ReplayOptions {
 struct BakeOptions {
   std::string input;
   std::string output;
-  std::vector<std::string> layers;  ///< scene: which layers; threshold and mesh: the layer's name
+  std::vector<std::string> layers;  ///< scene: which layers; threshold and mesh: name for the layer
   std::string units;                ///< mesh
   ScanOptions scan;
   std::string sign;              ///< mesh: "vote", "winding" or "flood"; empty: vote
@@ -132,19 +134,20 @@ struct BakeOptions {
   std::string names;
   std::string voxel;
   double half_width = 6.0;  ///< [voxels]
-  std::string max_memory;   ///< of all grids together; empty: 80 % of the machine's
-  std::string parts;       ///< bake of a scene: the scene file that recombines; empty: whole layers
-  bool level_set = false;  ///< grid: signed distances, though it has no class
+  std::string max_memory;   ///< limit for all grids together; empty: 80 % of the machine's
+  std::string parts;  ///< bake of a scene: file for the scene that combines the parts again; empty:
+                      ///< whole layers
+  bool level_set = false;  ///< grid: its values are signed distances, though it has no class
 };
 
-/// What is baked on the way, and into what kind of file it goes.
+/// The bake that precedes the conversion, and the kind of output.
 struct ConvertOptions {
   BakeOptions bake;      ///< its output may be a mesh or an image; --layer names a grid of a .vdb
   std::string to_units;  ///< mesh; empty: the input's
 };
 
 struct ImportOptions {
-  std::vector<std::string> scans;  ///< the label image; or masks, a structure each
+  std::vector<std::string> scans;  ///< the label image; or masks, one for each structure
   std::string output;
   bool dry_run = false;
   std::vector<std::string> labels;   ///< values, ranges, names, globs; empty: all
@@ -152,19 +155,19 @@ struct ImportOptions {
   std::string names;
   std::string image;                 ///< gray values
   std::optional<double> skin;        ///< the body is where `image` is brighter
-  bool hounsfield = false;           ///< `image` is a CT, from which stiffness comes
+  bool hounsfield = false;           ///< `image` is a CT, and stiffness is derived from it
   std::string body;                  ///< mask of the body
   std::optional<int> min_island;     ///< [voxels]
   std::string islands;               ///< "merge" or "drop"; empty: merge
   std::vector<std::string> tissues;  ///< LABELS=TISSUE
-  std::string tissue_file;           ///< lines of the same
-  std::string codes;      ///< whose numbers the labels are: "freesurfer"; empty: nobody's
-  bool strict = false;    ///< what no tissue fits is an error
+  std::string tissue_file;           ///< file with lines of the same form
+  std::string codes;      ///< table whose label numbers these are: "freesurfer"; empty: none
+  bool strict = false;    ///< labels that fit no tissue are an error
   std::string materials;  ///< table of tissues; empty: the project's
-  std::string to;         ///< a region or label that a way is looked for to; empty: none
+  std::string to;         ///< region or label to find a way to; empty: none
   std::string voxel;
   ScanOptions reading;                ///< of all images
-  std::vector<std::string> priority;  ///< where structures overlap: the first has the voxel
+  std::vector<std::string> priority;  ///< where structures overlap, the first one gets the voxel
 
   [[nodiscard]] const std::string& scan() const { return scans.front(); }
 };
@@ -180,8 +183,8 @@ struct CheckOptions {
   std::vector<std::string> files;
   std::string units;  ///< mesh, or grid without a unit
   ScanOptions scan;   ///< mesh: its space
-  std::string voxel;  ///< mesh: of the bake that is tried
-  std::string layer;  ///< grid; empty: all of the file
+  std::string voxel;  ///< mesh: voxel size of the trial bake
+  std::string layer;  ///< grid; empty: all grids of the file
   bool level_set = false;
 };
 
@@ -195,8 +198,8 @@ struct QueryOptions {
 
 struct ExplainOptions {
   std::string scene;
-  DeviceOptions device;        ///< of the stability budget
-  std::optional<double> rate;  ///< [Hz] of it; none: 1000
+  DeviceOptions device;        ///< for the stability budget
+  std::optional<double> rate;  ///< [Hz] for the budget; not given: 1000
   bool measure = false;
   std::string svg;
 };
@@ -211,7 +214,7 @@ struct RenderOptions {
   std::string image;
   std::string iso;            ///< a length
   std::optional<int> forces;  ///< arrows along the longer side
-  // Of a picture in space.
+  // For a picture in space:
   std::string view;                  ///< "corner", "front", "+x", "X,Y,Z"; empty: a flat cut
   std::string around;                ///< "X,Y,Z,RADIUS"
   std::vector<std::string> opacity;  ///< "LAYER=SHARE"
@@ -223,28 +226,28 @@ struct RenderOptions {
 struct ReportOptions {
   std::vector<std::string> inputs;  ///< traces, records, scenes, JSON of benches
   std::string output;
-  DeviceOptions device;        ///< of the stability budget
-  std::optional<double> rate;  ///< [Hz] of it; none: 1000
+  DeviceOptions device;        ///< for the stability budget
+  std::optional<double> rate;  ///< [Hz] for the budget; not given: 1000
 };
 
 struct BenchOptions {
   std::string what;  ///< "contact", "stability" or "servo"
   std::vector<std::string> scenes;
   std::string renderer;  ///< empty: all
-  // Of stability.
-  bool full = false;  ///< where nothing else is said: all scenes, four devices, three rates
+  // For stability:
+  bool full = false;  ///< where nothing else is given: all scenes, four devices, three rates
   std::vector<std::string> devices;  ///< empty: Falcon and Touch
   std::string curvature_svg;
-  // Of contact.
+  // For contact:
   int repeats = 10;
   int paced = 2000;
   int cold = 30;
   std::string csv;
   std::string svg;
   std::vector<double> rates;  ///< stability and servo: [Hz]; empty: 1000, of servo 4000 too
-  double seconds = 5.0;       ///< servo: of each
-  std::optional<int>
-      load;  ///< servo: busy threads; none: without, and then as many as there are cores
+  double seconds = 5.0;       ///< [s] servo: length of each run
+  std::optional<int> load;    ///< servo: busy threads; not given: one run without, and one with as
+                              ///< many as there are cores
 };
 
 struct DevicesOptions {
@@ -261,7 +264,7 @@ struct AccuracyOptions {
   std::string scene;
   std::vector<std::string> fields;    ///< empty: every layer
   std::vector<std::string> voxels;    ///< lengths
-  std::string ladder;                 ///< "A,B,C": the same, after one another
+  std::string ladder;                 ///< "A,B,C": the same as a list
   std::vector<std::string> samplers;  ///< empty: all
   int points = 100000;
   double band = 1.0;  ///< [voxels]

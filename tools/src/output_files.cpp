@@ -32,7 +32,7 @@ Error operationError(std::string code, std::string message, std::string hint, st
                {std::move(code), std::move(message), std::move(hint), std::move(file)});
 }
 
-/// A file descriptor that is closed in any case.
+/// A file descriptor that is always closed.
 class Descriptor {
  public:
   explicit Descriptor(int number) noexcept : number_(number) {}
@@ -42,14 +42,15 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   [[nodiscard]] int number() const noexcept { return number_; }
-  /// False if what was written did not all arrive.
+  /// False if the data could not all be written.
   [[nodiscard]] bool finish() noexcept { return close(std::exchange(number_, -1)) == 0; }
 
  private:
   int number_;
 };
 
-/// All of `text`; false with errno if not. A stop ends the wait for a slow reader.
+/// Writes all of `text`; returns false, with errno set, if it cannot. A stop ends the wait for a
+/// slow reader.
 bool writeAll(int to, std::string_view text) {
   while (!text.empty()) {
     const ssize_t done = ::write(to, text.data(), text.size());
@@ -74,8 +75,8 @@ std::string randomWord() {
   return word;
 }
 
-/// Makes an empty file whose name begins as given, which was not there before. Empty name: it could
-/// not be made.
+/// Makes a new empty file whose name begins with `begin`, and returns its name; an empty name if it
+/// cannot.
 std::string makeTemporary(const std::string& begin) {
   for (int attempt = 0; attempt < 100; ++attempt) {
     std::string name = begin + "." + randomWord() + ".tmp";
@@ -87,7 +88,7 @@ std::string makeTemporary(const std::string& begin) {
   return {};
 }
 
-/// The file that a symbolic link leads to: it is replaced, and the link stays.
+/// The file that a symbolic link points to: that file is replaced, and the link stays.
 std::string behindLink(const std::string& path) {
   std::error_code failed;
   if (!fs::is_symlink(fs::symlink_status(path, failed))) return path;
@@ -95,7 +96,7 @@ std::string behindLink(const std::string& path) {
   return failed ? path : target.string();
 }
 
-/// Whether two names mean the same file, be it there or not: links and folders are looked through.
+/// Whether two names mean the same file, existing or not: links and folders are resolved.
 bool isSameFile(const std::string& a, const std::string& b) {
   std::error_code failed;
   const auto real = [&](const std::string& path) {
@@ -106,7 +107,8 @@ bool isSameFile(const std::string& a, const std::string& b) {
   return real(a) == real(b);
 }
 
-/// Gives `file` the mode of the one it will replace, and its owner where that is allowed.
+/// Gives `file` the mode of the file that it will replace, and that file's owner where this process
+/// may.
 void keepMode(const std::string& file, const std::string& replaced) {
   struct stat old = {};
   struct stat own = {};
@@ -120,13 +122,13 @@ void keepMode(const std::string& file, const std::string& replaced) {
   static_cast<void>(!fchmod(opened.number(), old.st_mode & kAll));
 }
 
-/// Copies what was written for `path` to the pipe or device that `path` is.
+/// Copies the data written for `path` to the pipe or device that `path` is.
 void stream(const std::string& from, const std::string& path) {
   const bool is_standard = path == kStandardOutput;
   if (is_standard) std::fflush(stdout);
   int opened = -1;
   do {
-    checkStop();  // a pipe waits for its reader
+    checkStop();  // writing to a pipe waits for its reader
     opened = is_standard ? dup(STDOUT_FILENO) : open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
   } while (opened < 0 && errno == EINTR);
   Descriptor to(opened);
@@ -146,12 +148,12 @@ void stream(const std::string& from, const std::string& path) {
   }
 }
 
-/// Renames, without replacing anything unless that is wanted.
+/// Renames a file; replaces an existing one only if `overwrite`.
 bool rename(const std::string& from, const std::string& to, bool overwrite) {
   if (overwrite) return ::rename(from.c_str(), to.c_str()) == 0;
   if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
-  // A file system that cannot: link() refuses as well where there is something.
+  // For file systems without this kind of rename: link() fails as well if the target exists.
   return link(from.c_str(), to.c_str()) == 0 && unlink(from.c_str()) == 0;
 }
 
@@ -284,8 +286,7 @@ void OutputFiles::keep(const std::string& path) {
 }
 
 void OutputFiles::commit() {
-  std::vector<std::string>
-      fresh;  // what this call brought into being, to be undone if a later one fails
+  std::vector<std::string> fresh;  // files created by this call, to be removed if a later one fails
   const auto undo = [&] {
     std::error_code ignored;
     for (const std::string& name : fresh) fs::remove(name, ignored);
@@ -296,7 +297,7 @@ void OutputFiles::commit() {
     const bool existed = fs::exists(fs::symlink_status(file.target, failed));
     keepMode(file.temporary, file.target);
     if (!rename(file.temporary, file.target,
-                overwrite_)) {  // without --force: it came while we worked
+                overwrite_)) {  // without --force, the file appeared while this run worked
       const int why = errno;
       undo();
       throw operationError("output.rename",
@@ -305,7 +306,7 @@ void OutputFiles::commit() {
     }
     if (!existed) fresh.push_back(file.target);
   }
-  // What went through a pipe cannot be taken back, so it comes last.
+  // Data sent through a pipe cannot be taken back, so that pipes come last.
   for (const File& file : files_) {
     if (!file.is_direct) continue;
     try {

@@ -1,5 +1,5 @@
 #pragma once
-/// A scene baked in parts: grids of what is smooth, and a scene that puts them together with its
+/// Bakes a scene in parts: grids of the smooth parts, and a scene that combines them with the exact
 /// edges.
 
 #include <string>
@@ -18,11 +18,11 @@ struct LayerParts {
 
 struct BakedParts {
   std::vector<LayerParts> layers;
-  std::string scene;  ///< the text of the scene file `options.parts`
+  std::string scene;  ///< text for the scene file `options.parts`
 };
 
-/// Of each layer asked for that is given by `inside`: grids of the parts that a grid holds and that
-/// are not exact by themselves. Faces that ports are on stay as they are.
+/// For each requested layer given by `inside`: grids of the parts that a grid can hold and that are
+/// not exact already. Faces that carry ports stay as they are.
 /// @throws Error: kUsage for inputs other than scenes; kOperation if no part became a grid.
 [[nodiscard]] BakedParts bakeParts(const BakeOptions& options, Console& console);
 

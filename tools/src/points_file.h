@@ -1,5 +1,5 @@
 #pragma once
-/// Points to query, out of a CSV file.
+/// Query points from a CSV file.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,8 @@
 
 namespace palpate::tools {
 
-/// Header `x,y,z`, then one point a line, in `unit`; to [m]. Blank lines are skipped; CRLF too.
+/// Header `x,y,z`, then one point a line, in `unit`; converted to [m]. Blank lines are skipped;
+/// CRLF is accepted.
 /// @throws Error (kInput) with file:line.
 [[nodiscard]] std::vector<Vec3> readPoints(const std::string& file, const LengthUnit& unit);
 

@@ -20,7 +20,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kNames = {"falcon", "inverse3", "dhd", "hd"};
 constexpr std::string_view kInput = "evdev";
 
-/// An option, whether it is given, and the devices that have it.
+/// An option, whether it is given, and the devices that accept it.
 struct GivenOption {
   const char* name;
   bool is_given;
@@ -36,7 +36,7 @@ std::vector<GivenOption> optionsOf(const RealDeviceOptions& o) {
           {"--service", !o.service.empty(), {"inverse3"}}};
 }
 
-/// Another device, until its time is over.
+/// Wraps another device, and ends after a time.
 class TimedDevice final : public devices::Device {
  public:
   TimedDevice(std::unique_ptr<devices::Device> device, double seconds)

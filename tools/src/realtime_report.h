@@ -1,5 +1,5 @@
 #pragma once
-/// What a real-time run says of its clock.
+/// The report of a real-time run on its timing.
 
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace palpate::tools {
 
-/// Of a loop that the clock wakes: how late its turns began. Of one that its device paces
-/// (DeviceInfo::is_clock): how far apart they were, as nothing says when one was due.
+/// For a loop that the clock wakes: how late its turns began. For one that its device paces
+/// (DeviceInfo::is_clock): the intervals between turns, because nothing says when one was due.
 [[nodiscard]] Json realtimeJson(const devices::ServoReport& servo, bool is_paced_by_device);
 [[nodiscard]] std::string realtimeText(const devices::ServoReport& servo, bool is_paced_by_device);
 

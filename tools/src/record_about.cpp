@@ -29,7 +29,7 @@ Error badAbout(const std::string& message, const std::string& file) {
                     file);
 }
 
-/// Takes values out of an object, and says which one is wrong.
+/// Takes values from an object, and reports which one is wrong.
 class Values {
  public:
   Values(const Json& object, std::string file) : object_(&object), file_(std::move(file)) {}
@@ -96,8 +96,8 @@ class Values {
   std::string file_;
 };
 
-/// Calls `visit` with section ("" for the object itself), key and value for each that a record's
-/// file holds: so writing and reading name the same.
+/// Calls `visit` with section ("" for the object itself), key and value for each member in a
+/// record's file, so that writing and reading use the same names.
 template <typename About, typename Visit>
 void eachValue(About& about, const Visit& visit) {
   visit("", "version", about.version);
@@ -134,7 +134,7 @@ void eachValue(About& about, const Visit& visit) {
   visit("", "ports", about.ports);
 }
 
-/// Options that records of 0.1 may lack: they had none of them.
+/// Options that did not exist in records of version 0.1.
 bool isLater(std::string_view key) {
   constexpr std::string_view kLater[] = {"device",    "hand",       "delay",
                                          "passivity", "hand_force", "coupling"};
@@ -153,8 +153,8 @@ Json jsonOf(devices::DeviceFrame frame) {
   return frame == devices::DeviceFrame::kDevice ? "device" : "world";
 }
 
-/// Refuses what the command line would refuse; quantities are read later, for the scene that they
-/// are of.
+/// Refuses what the command line would refuse; quantities are parsed later, for the scene that they
+/// belong to.
 void checkOptions(const TouchOptions& options, const Values& all) {
   const auto need = [&](bool may_be, const char* key) {
     if (!may_be) throw all.bad(key);

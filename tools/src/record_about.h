@@ -1,5 +1,5 @@
 #pragma once
-/// What a record was made with: FILE.npy.json, beside the ticks in FILE.npy and the states in
+/// The circumstances of a record: FILE.npy.json, beside the ticks in FILE.npy and the states in
 /// FILE.npy.states.
 
 #include <cstdint>
@@ -17,24 +17,25 @@ struct RecordAbout {
   std::string build;    ///< devices::stateBuild()
   std::string scene;    ///< absolute path
   std::string
-      scene_text;  ///< of a mesh, image or grid: the scene that it was touched as; else empty
-  std::string scene_hash;                                     ///< sceneHash()
-  bool shows_all = false;                                     ///< compiled for Purpose::kShow
-  std::string renderer;                                       ///< "constraint" or "paper"
-  std::string device;                                         ///< its name
+      scene_text;  ///< for a mesh, image or grid: the scene as which it was touched; else empty
+  std::string scene_hash;  ///< sceneHash()
+  bool shows_all = false;  ///< whether the scene was compiled for Purpose::kShow
+  std::string renderer;    ///< "constraint" or "paper"
+  std::string device;      ///< its name
   devices::DeviceFrame frame = devices::DeviceFrame::kWorld;  ///< of its readings
   double max_force = 0.0;                                     ///< [N] of the device
   double rate = 0.0;                                          ///< [Hz]
   bool realtime = false;
   double period = 0.0;             ///< [s] ForceLimits::period
   std::uint64_t states_every = 0;  ///< [ticks] SessionSettings::checkpoint_every
-  /// As given: epsilon, halvings, alpha, alpha_form, interior, max_force, slew, ramp, set.
+  /// As the user gave them: epsilon, halvings, alpha, alpha_form, interior, max_force, slew, ramp,
+  /// set.
   TouchOptions options;
   std::vector<std::string> regions;  ///< names by RegionId
   std::vector<std::string> ports;    ///< names by PortId
 };
 
-/// What a record of a touch says that it was made with, but for `period` and the renderer.
+/// Fills in the circumstances of a touch, except `period` and the renderer.
 void describe(RecordAbout& about, const TouchOptions& options, const devices::DeviceInfo& device,
               const Scene& scene, const std::string& scene_text);
 
@@ -49,8 +50,8 @@ struct ReadAbout {
   RecordAbout about;
   std::string text;  ///< of the file
 };
-/// Of the record FILE.npy. @throws Error (kInput, record.about) for a file that is missing, or that
-/// aboutText() did not write.
+/// Reads the circumstances of the record FILE.npy. @throws Error (kInput, record.about) for a file
+/// that is missing, or that aboutText() did not write.
 [[nodiscard]] ReadAbout readAbout(const std::string& record);
 
 }  // namespace palpate::tools

@@ -1,5 +1,5 @@
 #pragma once
-/// Rows of a report: a table for people and an array for programs, from the same calls.
+/// Rows of a report: the same calls make a table for people and an array for programs.
 
 #include <string>
 #include <utility>
@@ -18,8 +18,8 @@ class ReportRows {
     table_.add(std::move(cells));
     json_.push_back(std::move(json));
   }
-  /// The array as `key`; the table below `title`, or, without any rows, `none` (nothing at all if
-  /// that is empty).
+  /// Writes the array as `key`, and the table below `title`; without rows, the text `none` (nothing
+  /// if it is empty).
   void writeTo(Report& report, const std::string& key, const std::string& title,
                const std::string& none = {}) {
     report.json[key] = std::move(json_);

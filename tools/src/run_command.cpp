@@ -47,14 +47,14 @@ Json errorJson(const Problem& problem) {
   return {{"schema", "palpate.error/1"}, {"error", std::move(error)}};
 }
 
-/// False if stdout did not take it.
+/// False if stdout did not accept the text.
 bool print(const std::string& text) {
   return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
          std::fflush(stdout) == 0;
 }
 
 bool print(const Json& json) {
-  // Names out of files need not be UTF-8; such bytes are replaced; no exception is thrown for them.
+  // Names from files may not be UTF-8; such bytes are replaced instead of throwing.
   return print(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
@@ -73,7 +73,7 @@ int runCommand(const std::vector<std::string>& arguments) {
   catchStopSignals();
   watchStopFlag(&stopRequested());
   vdb::setLibraryLimits({.in_child = true});
-  // Asked for before parsing, because a usage error must be JSON too.
+  // Looked for before parsing, because a usage error must be JSON too.
   const bool json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
   try {
     const Invocation invocation = parseCommandLine(arguments);
@@ -99,7 +99,8 @@ int runCommand(const std::vector<std::string>& arguments) {
             invocation.options);
       }
       is_yes = report.is_yes;
-      if (standardOutputIsTaken()) {  // by a file of the run: what there is to tell is talk then
+      if (standardOutputIsTaken()) {  // if a file of the run takes stdout, the summary goes to
+                                      // stderr
         printed = invocation.general.quiet || std::fputs(report.text.c_str(), stderr) >= 0;
       } else {
         printed = invocation.general.json ? print(report.json) : print(report.text);

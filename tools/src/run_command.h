@@ -1,13 +1,14 @@
 #pragma once
-/// The command, all but the process that it is.
+/// The whole command except main().
 
 #include <string>
 #include <vector>
 
 namespace palpate::tools {
 
-/// Parses `arguments` (without the program's name), runs one verb, prints once, and returns the
-/// exit code that what went wrong has. Once in a process: it takes over the signals that stop it.
+/// Parses `arguments` (without the program's name), runs one verb, prints its report once, and
+/// returns the exit code. To be called once in a process: it takes over the signals that stop the
+/// run.
 [[nodiscard]] int runCommand(const std::vector<std::string>& arguments);
 
 }  // namespace palpate::tools

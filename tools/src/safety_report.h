@@ -1,5 +1,5 @@
 #pragma once
-/// What the loop's safety rules did while a hand held the device.
+/// Reports what the loop's safety rules did while a hand held the device.
 
 #include <string>
 

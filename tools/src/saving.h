@@ -1,5 +1,5 @@
 #pragma once
-/// What it saves not to make what a scene does not need.
+/// The cost saved by not making parts that a scene does not need.
 
 #include <cstdint>
 #include <optional>
@@ -13,12 +13,13 @@ struct Saving {
   double seconds = 0.0;
 };
 
-/// What a scene costs, measured: its file is read anew and compiled for `purpose`. Bytes are those
-/// that the loop reads grids from. @throws Error.
+/// Measured cost of a scene: its file is read anew and compiled for `purpose`. The bytes are those
+/// of the grids that the loop reads. @throws Error.
 [[nodiscard]] Saving costOf(const std::string& file, Purpose purpose, Console& console);
 
-/// An estimate: bands cost by their surface, and that of a box stands for it. None if nothing was
-/// left out, or no grid was made that would tell what one costs.
+/// An estimate: the cost of a band is proportional to its surface, for which the surface of its box
+/// is used. Nothing if no part was left out, or if no grid was made from which the cost of one
+/// would follow.
 [[nodiscard]] std::optional<Saving> savingOf(const LoadedScene& loaded, const Scene& scene);
 
 }  // namespace palpate::tools

@@ -37,7 +37,7 @@ vdb::Mesh readMeshFile(const std::string& file, const std::string& units,
   }
   const LengthUnit unit = prescribed.empty() ? meshUnit(units) : lengthUnit(prescribed);
   vdb::Mesh mesh = vdb::readMesh(file, unit.meters, spaceOf(options));
-  // Of models of scans it matters; other meshes have no patient.
+  // The note matters for models of scans; other meshes have no patient.
   if (options.space.empty() && (mesh.space_is_stated || vdb::hasExtension(file, ".vtk"))) {
     console.note(file + ": coordinates are " + spaceText(mesh, options) +
                  "; --space says otherwise");

@@ -1,5 +1,5 @@
 #pragma once
-/// Options that say what a scan or a mesh leaves open.
+/// Options about facts that a scan or a mesh may not state.
 
 #include <string>
 
@@ -13,15 +13,15 @@ namespace palpate::tools {
 
 [[nodiscard]] vdb::ImageOptions imageOptions(const ScanOptions& options);
 
-/// The mesh in `file`, in `units`; if they are empty in those of its format, else in mm. Says what
-/// was taken for granted of its unit and, if it may be of a scan, its space.
+/// Reads the mesh in `file`, in `units`; if these are empty, in those of its format, else in mm.
+/// Notes the assumptions about its unit and, if it may come from a scan, about its space.
 [[nodiscard]] vdb::Mesh readMeshFile(const std::string& file, const std::string& units,
                                      const ScanOptions& options, Console& console);
 
-/// The unit of what is written about a mesh, and of its grid: mm if `units` is empty.
+/// The unit for texts about a mesh, and for its grid: mm if `units` is empty.
 [[nodiscard]] LengthUnit meshUnit(const std::string& units);
 
-/// "RAS", and why.
+/// "RAS", with the reason.
 [[nodiscard]] std::string spaceText(const vdb::Mesh& mesh, const ScanOptions& options);
 
 /// Throws Error (kUsage) if one of `options` was given that applies to images only.

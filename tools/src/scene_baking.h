@@ -1,5 +1,5 @@
 #pragma once
-/// What baking a scene whole and in parts share.
+/// Shared by baking a scene whole and in parts.
 
 #include <string>
 
@@ -11,8 +11,7 @@ namespace palpate::tools {
 
 [[nodiscard]] Error bakeUsageError(std::string message, std::string hint = {});
 
-/// Options that make no sense for a scene are refused, not ignored, and so are layers that it
-/// lacks.
+/// Refuses options that make no sense for a scene, and layers that it does not have.
 void checkSceneOptions(const BakeOptions& options, const SceneDescription& description);
 
 /// Whether --layer asks for this one.
@@ -21,22 +20,23 @@ void checkSceneOptions(const BakeOptions& options, const SceneDescription& descr
 /// --voxel [m], or 0 if it was not given. @throws Error (kUsage).
 [[nodiscard]] double askedVoxel(const BakeOptions& options, const LengthUnit& unit);
 
-/// [m] A share of the longest side, and a note that tells so.
+/// [m] A share of the longest side, reported by a note.
 [[nodiscard]] double defaultVoxel(const LengthUnit& unit, const Box3& bounds,
                                   const std::string& what, Console& console);
 
-/// [bytes] What --max-memory leaves beside `taken`; 0 if it was not given. @throws Error (kUsage).
+/// [bytes] What remains of --max-memory after `taken`; 0 if the option was not given. @throws Error
+/// (kUsage).
 [[nodiscard]] std::uint64_t memoryLeft(const BakeOptions& options, std::uint64_t taken = 0);
 
-/// The same error; where too little memory was allowed, with the option that allows more.
+/// The same error; if too little memory was allowed, with a hint to the option that allows more.
 [[nodiscard]] Error withMemoryHint(const Error& error);
 
-/// `taken` [bytes]: what grids before it take.
+/// `taken` [bytes]: memory of the grids made before.
 [[nodiscard]] vdb::BakeOptions gridOptions(const BakeOptions& options, const std::string& layer,
                                            double voxel, const std::string& unit,
                                            const std::string& source, std::uint64_t taken = 0);
 
-/// @throws Error (kInput) if the layer's field reaches to infinity.
+/// @throws Error (kInput) if the layer's field is unbounded.
 void requireBounds(const Field& field, const std::string& layer, const std::string& file);
 
 }  // namespace palpate::tools

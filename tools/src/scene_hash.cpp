@@ -44,8 +44,8 @@ std::uint64_t hashOfPath(const fs::path& path, std::uint64_t hash) {
 
 std::uint64_t hashOfNode(const Node& node, const fs::path& folder, std::uint64_t hash) {
   if (node.kind == Node::Kind::kScalar) {
-    // Names of files have a dot, a separator or quotes; numbers and plain words need no look at the
-    // disk.
+    // File names contain a dot, a separator or quotes; for numbers and plain words the disk need
+    // not be accessed.
     const bool may_be = node.quoted || node.text.find_first_of("./") != std::string::npos;
     if (may_be && !node.text.empty()) hash = hashOfPath(folder / node.text, hash);
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// The parameters of a scene that differ from place to place, by the names they have in files.
+/// The parameters of a scene that vary from place to place, under the names that files give them.
 
 #include <string>
 #include <vector>
@@ -16,13 +16,14 @@ struct SceneParameter {
   MaterialMapPtr map;
 
   [[nodiscard]] std::string name() const { return owner + "/" + parameter; }
-  /// Null if the map is none of voxels.
+  /// Null if the map is not made of voxels.
   [[nodiscard]] vdb::MaterialGridPtr grid() const {
     return std::dynamic_pointer_cast<const vdb::MaterialGrid>(map);
   }
 };
 
-/// Of each layer's wall and content, and of each port; a map that several use is listed for each.
+/// The parameters of each layer's wall and content, and of each port; a map with several users is
+/// listed for each.
 [[nodiscard]] std::vector<SceneParameter> sceneParameters(const SceneDescription& description);
 
 }  // namespace palpate::tools

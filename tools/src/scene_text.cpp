@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A text that YAML takes for itself wherever it stands, without quotes.
+/// Whether YAML reads the text as itself, without quotes, at any place.
 bool isPlain(std::string_view text) {
   const auto is_safe = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -43,7 +43,7 @@ std::string flowText(const Node& node) {
   return "{" + out + "}";
 }
 
-/// Where the keys are names that the author gave.
+/// Whether the keys of a section are names that the author gave.
 bool namesThings(std::string_view section) {
   return section == "fields" || section == "images" || section == "materials";
 }

@@ -36,7 +36,7 @@ void refuseImageOptions(const TouchOptions& o) {
   refuse(!o.scan.series.empty(), "--series", "DICOM folders");
 }
 
-/// What may stand as the name of a layer, and has not been one yet.
+/// A valid name for a layer that is not taken yet.
 std::string layerName(std::string text, std::set<std::string>& taken) {
   for (char& c : text) {
     if (std::string_view("*?;,/\"\\").find(c) != std::string_view::npos) c = '_';
@@ -47,7 +47,7 @@ std::string layerName(std::string text, std::set<std::string>& taken) {
   return name;
 }
 
-/// The entries of a scene, put together.
+/// The sections of a scene while it is put together.
 struct Parts {
   std::string fields;
   std::string images;
@@ -68,7 +68,7 @@ struct Parts {
   }
 };
 
-/// `{key: value, ...}` of the values that are there.
+/// `{key: value, ...}` of the values that are given.
 class Entries {
  public:
   void add(const std::string& key, const std::string& value) {
@@ -83,7 +83,7 @@ class Entries {
   std::string text_;
 };
 
-/// A length that a scene in mm has without a unit.
+/// A length as a scene in mm writes it: without a unit.
 std::string voxelOf(const TouchOptions& o) {
   if (o.voxel.empty()) return "";
   const double voxel = parseLength(o.voxel, {"mm", 1e-3}, "--voxel");
@@ -160,7 +160,7 @@ void addGrid(const TouchOptions& o, const std::string& file, Parts& parts) {
       continue;
     }
     const bool is_mask = o.above.has_value() || grid.type == "BoolGrid" || grid.type == "MaskGrid";
-    // Beside surfaces a file may hold maps of materials, which are not shapes.
+    // Besides surfaces a file may hold maps of materials, which are not shapes.
     if (asked.empty() && grids.size() > 1 && !is_mask && grid.grid_class != "level set") continue;
     found = true;
     std::string layer = grid.name.empty() ? stemOf(o.scene) : grid.name;
@@ -187,7 +187,7 @@ void addGrid(const TouchOptions& o, const std::string& file, Parts& parts) {
       "--layer NAME with --above DENSITY puts a surface around what is denser", o.scene);
 }
 
-/// Where the line down through (x, y) first meets the inside of a field, if it does.
+/// The first point inside a field on the line down through (x, y), if there is one.
 std::optional<SurfacePoint> meetFromAbove(const Field& field, const Box3& box, double x, double y) {
   const double step = std::max(1e-4 * glm::length(box.size()), 0.25 * field.featureSize());
   double above = box.hi.z + step;
@@ -249,7 +249,7 @@ void refuseShapeOptions(const TouchOptions& o) {
 SurfacePoint findSurfacePoint(const Scene& scene) {
   const Box3 box = scene.bounds();
   constexpr int kLines = 33;
-  std::vector<std::pair<double, Vec3>> lines;  // by distance from the middle
+  std::vector<std::pair<double, Vec3>> lines;  // sorted by distance from the middle
   for (int i = 0; i < kLines && box.isBounded(); ++i) {
     for (int j = 0; j < kLines; ++j) {
       const Vec3 share((i + 0.5) / kLines, (j + 0.5) / kLines, 0.5);

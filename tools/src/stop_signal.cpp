@@ -15,15 +15,16 @@ extern "C" void onStopSignal(int /*signal*/) { stop_requested.store(true); }
 void catchStopSignals() {
   struct sigaction action = {};
   action.sa_handler = onStopSignal;
-  // Who asks twice is not made to wait.
+  // A second signal ends the process at once.
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // A reader that goes away is an error of writing, told as one, with nothing left behind.
+  // A reader that closes its end becomes an error of writing, reported like others, with nothing
+  // left behind.
   struct sigaction ignore = {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, nullptr);
-  sigaction(SIGXFSZ, &ignore, nullptr);  // and so is a file that may grow no further
+  sigaction(SIGXFSZ, &ignore, nullptr);  // the same for a file that may not grow further
 }
 
 const std::atomic<bool>& stopRequested() noexcept { return stop_requested; }

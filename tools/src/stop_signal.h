@@ -1,12 +1,12 @@
 #pragma once
-/// Ctrl-C and a polite kill, turned into a flag.
+/// Turns Ctrl-C and SIGTERM into a flag.
 
 #include <atomic>
 
 namespace palpate::tools {
 
 /// From now on SIGINT and SIGTERM set stopRequested(); a second one ends the process at once.
-/// Writing to a pipe that nobody reads, or beyond the size that a file may have, fails, instead of
+/// Writing to a pipe without a reader, or beyond the size limit of files, then fails instead of
 /// ending the process.
 void catchStopSignals();
 

@@ -183,7 +183,7 @@ std::string Table::text(std::string_view indent) const {
     widths.resize(std::max(widths.size(), row.size()), 0);
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], columns(row[i]));
   }
-  // A column is set to the right if everything below its heading looks like a number.
+  // A column is right-aligned if everything below its heading looks like a number.
   std::vector<bool> right(widths.size(), rows_.size() > 1);
   for (std::size_t r = 1; r < rows_.size(); ++r) {
     for (std::size_t i = 0; i < rows_[r].size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers, points and tables: from the command line, and for people to read.
+/// Numbers, points and tables: parsed from the command line, and formatted for people.
 
 #include <cstdint>
 #include <string>
@@ -11,18 +11,18 @@
 
 namespace palpate::tools {
 
-/// The unit that lengths without one are in.
+/// The unit of lengths that state none.
 struct LengthUnit {
   std::string name = "mm";
-  double meters = 1e-3;  ///< [m] in one
+  double meters = 1e-3;  ///< [m] size of one unit
 };
-/// @throws Error (kUsage) for a unit that is not known.
+/// @throws Error (kUsage) for an unknown unit.
 [[nodiscard]] LengthUnit lengthUnit(const std::string& name);
 
-// From text. `what` names the option in the message. @throws Error (kUsage).
+// Parsers. `what` names the option in the message. @throws Error (kUsage).
 [[nodiscard]] double parseLength(std::string_view text, const LengthUnit& unit, const char* what);
 [[nodiscard]] double parseSpeed(std::string_view text, const LengthUnit& unit, const char* what);
-/// A plain number is in N, N/m, N.s/m, N/s and s.
+/// A plain number is in N, N/m, N.s/m, N/s or s.
 [[nodiscard]] double parseForce(std::string_view text, const char* what);
 [[nodiscard]] double parseStiffness(std::string_view text, const char* what);
 [[nodiscard]] double parseDamping(std::string_view text, const char* what);
@@ -30,13 +30,13 @@ struct LengthUnit {
 [[nodiscard]] double parseTime(std::string_view text, const char* what);
 /// [bytes] "500MB", "1.5 GB" (powers of ten, as formatBytes() writes them) or "2GiB"; at least 1.
 [[nodiscard]] std::uint64_t parseBytes(std::string_view text, const char* what);
-/// "X,Y,Z": three numbers, unitless.
+/// "X,Y,Z": three numbers without a unit.
 [[nodiscard]] Vec3 parseVector(std::string_view text, const char* what);
-/// "X,Y,Z" in `unit`; to [m].
+/// "X,Y,Z" in `unit`; converted to [m].
 [[nodiscard]] Vec3 parsePoint(std::string_view text, const LengthUnit& unit, const char* what);
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 
-// To text.
+// Formatters.
 [[nodiscard]] std::string formatNumber(double value, int digits = 4);   ///< "%.{digits}g", "inf"
 [[nodiscard]] std::string formatParameter(const Parameter& parameter);  ///< "200", "200 to 900"
 [[nodiscard]] std::string formatVector(const Vec3& v, int digits = 4);  ///< "(x, y, z)"
@@ -46,13 +46,13 @@ struct LengthUnit {
 [[nodiscard]] std::string formatNanoseconds(double ns);      ///< "830 ns", "1.2 us"
 [[nodiscard]] std::string formatSeconds(double seconds);     ///< "41.2 ms", "0.41 s"
 
-/// Columns of text under headings; numbers to the right.
+/// Columns of text under headings; numbers are right-aligned.
 class Table {
  public:
   explicit Table(std::vector<std::string> heading) { rows_.push_back(std::move(heading)); }
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
   [[nodiscard]] bool empty() const noexcept { return rows_.size() == 1; }
-  /// The heading first.
+  /// All rows, the heading first.
   [[nodiscard]] const std::vector<std::vector<std::string>>& rows() const noexcept { return rows_; }
   [[nodiscard]] std::string text(std::string_view indent) const;
 

@@ -20,7 +20,7 @@ void ThinTrace::add(const devices::RecordedTick& tick, std::span<const RegionEnt
   if (!entries.empty()) row.entries.push_back(entries.front());
   stretches_.back().push_back(std::move(row));
   ++count_;
-  // So that a stretch that has become long needs no more room than a short one.
+  // Bounded, so that a long interval needs no more memory than a short one.
   constexpr std::size_t kMostOpen = 64;
   if (stretches_.back().size() == kMostOpen) thin(stretches_.back());
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// A trace for pictures: so many rows that the eye finds none missing, however long the touch.
+/// A trace for pictures: few rows, but enough that the eye misses none, however long the touch.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,25 +10,26 @@
 
 namespace palpate::tools {
 
-/// All rows of a touch of up to kExact ticks. Of a longer one, of each stretch of ticks (all of one
-/// length, a power of 2 times kKept): the first and the last row, those with the largest and
-/// smallest force and coordinates of the hand, and the first few in which the proxy came into
-/// another region.
+/// Keeps all rows of a touch of up to kExact ticks. A longer one is divided into intervals of ticks
+/// (all of one length, a power of 2 times kKept). Each interval keeps the first and the last row,
+/// those with the largest and smallest force and coordinates of the hand, and the first few in
+/// which the proxy entered another region.
 class ThinTrace final : public devices::RecordSink {
  public:
   static constexpr std::size_t kKept =
-      8;  ///< rows of a stretch that are kept in any case, if it has no more
+      8;  ///< an interval with no more rows than this keeps them all
   static constexpr std::size_t kMostStretches = 8192;
   static constexpr std::size_t kExact = kKept * kMostStretches;
 
   void add(const devices::RecordedTick& tick, std::span<const RegionEntry> entries) override;
-  /// Of all ticks so far, in order; of the regions entered in a tick the first alone.
+  /// The rows for all ticks so far, in order; of several regions entered in one tick only the first
+  /// is kept.
   [[nodiscard]] Trace trace() const;
 
  private:
   struct Row {
     TraceRow row;
-    std::vector<RegionEntry> entries;  ///< the first, if there is any
+    std::vector<RegionEntry> entries;  ///< the first one, if there is any
   };
   using Stretch = std::vector<Row>;
 
@@ -36,8 +37,8 @@ class ThinTrace final : public devices::RecordSink {
   void halve();
 
   std::vector<Stretch> stretches_;
-  std::uint64_t length_ = kKept;  ///< [ticks] of a stretch
-  std::uint64_t count_ = 0;       ///< ticks of the last stretch
+  std::uint64_t length_ = kKept;  ///< [ticks] in an interval
+  std::uint64_t count_ = 0;       ///< ticks of the last interval
 };
 
 }  // namespace palpate::tools

@@ -1,5 +1,5 @@
 #pragma once
-/// How long ticks took: order statistics of any number of them in constant memory.
+/// Durations of ticks: order statistics of any number of them in constant memory.
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace palpate::tools {
 
-/// Counts times by value: exactly up to 65 us, and from there to one part in 256.
+/// Counts times by value: exact up to 65 us, and to one part in 256 beyond.
 class TickTimes {
  public:
   TickTimes() : counts_(kExact + kSteps * (64 - kExactBits)) {}
@@ -22,7 +22,8 @@ class TickTimes {
     longest_ = std::max(longest_, time);
   }
 
-  /// [ns] The smallest time that at least `share` of all do not exceed; 0 of none.
+  /// [ns] The smallest time that is not exceeded by at least the share `share` of all; 0 if there
+  /// are none.
   [[nodiscard]] double quantile(double share) const noexcept {
     if (count_ == 0) return 0.0;
     const auto rank = std::clamp<std::uint64_t>(
@@ -46,7 +47,7 @@ class TickTimes {
     const std::uint64_t step = (time >> (octave - kStepBits)) - kSteps;
     return kExact + kSteps * (octave - kExactBits) + static_cast<std::size_t>(step);
   }
-  /// [ns] The longest time that is counted there.
+  /// [ns] The longest time that is counted at that place.
   [[nodiscard]] static std::uint64_t longestAt(std::size_t place) noexcept {
     if (place < kExact) return place;
     const std::size_t above = place - kExact;

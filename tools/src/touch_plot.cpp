@@ -16,10 +16,10 @@ namespace {
 constexpr double kWidth = 1200.0;
 constexpr double kHeight = 800.0;
 constexpr Frame kFrame{90.0, 1160.0, 110.0, 730.0};
-/// Below the first, where the hand leaves the straight way in.
+/// A second plot below the first, drawn if the hand leaves the straight way in.
 constexpr Frame kWayFrame{90.0, 1160.0, 860.0, 1240.0};
 constexpr double kWayHeight = 1310.0;
-/// A hand that strays this far off the straight way in, as a share of its length, has left it.
+/// The hand has left the straight way in if it is farther off than this share of the way's length.
 constexpr double kOffWay = 0.02;
 constexpr const char* kAlong = "#333333";
 constexpr const char* kAcross = "#2a8a4a";
@@ -41,8 +41,8 @@ std::string curve(const std::vector<Sample>& samples, std::size_t first, std::si
          points + "'/>\n";
 }
 
-/// The same forces along the hand's own way and square to it, over the length of that way: what a
-/// hand that turns off the straight way in meets.
+/// The same forces along the hand's own path and perpendicular to it, over the length of that path:
+/// the forces on a hand that turns off the straight way.
 std::string wayPanel(const Trace& trace, const Scene& scene) {
   const std::span<const TraceRow> rows = trace.rows();
   const double unit = scene.metersPerUnit();
@@ -100,7 +100,7 @@ std::string forcePlot(const Trace& trace, const Scene& scene, const std::string&
   Vec3 furthest(0.0);
   std::size_t turn = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    // What comes before the surface lies on the other side of it.
+    // Points before the surface are on the other side of it.
     const Vec3 way = rows[i].hip - origin;
     if (surface && glm::dot(way, origin - rows.front().hip) < 0.0) continue;
     if (glm::length(way) > glm::length(furthest)) {
@@ -136,8 +136,8 @@ std::string forcePlot(const Trace& trace, const Scene& scene, const std::string&
   }
   out += evenAxes(kFrame, x, y, "depth of the hand, " + scene.lengthUnit(),
                   "force against the way in, N");
-  // Ports passed on the way in hang from the top, those on the way back stand on the bottom; names
-  // that would run into each other stand one above the other.
+  // Ports passed on the way in are named at the top, those on the way back at the bottom; names
+  // that would overlap are stacked.
   constexpr double kNameWidth = 130.0;
   std::array<double, 2> last_at = {-kWidth, -kWidth};
   std::array<int, 2> level = {0, 0};

@@ -1,5 +1,5 @@
 #pragma once
-/// Force over depth of a touch, as SVG: what needle insertion is usually shown by.
+/// Force over depth of a touch, as SVG: the usual plot for needle insertion.
 
 #include <string>
 
@@ -7,11 +7,12 @@
 
 namespace palpate::tools {
 
-/// The hand's force against its depth. The depth counts from the first wall met, along the straight
-/// line from there to the furthest that the hand got; the force is what pushes the hand back along
-/// it. Ports passed stand beside the curve. Where the hand leaves that line, a second plot below
-/// has the force along the hand's own way and square to it, over the length of that way. Empty rows
-/// or a hand that never met a surface give axes alone.
+/// The hand's force against its depth. The depth is measured from the first wall met, along the
+/// straight line from there to the farthest point that the hand reached; the force is its component
+/// that pushes the hand back along that line. Passed ports are marked beside the curve. If the hand
+/// leaves that line, a second plot below shows the force along the hand's own path and
+/// perpendicular to it, over the length of the path. Without rows, or if the hand never met a
+/// surface, only axes are drawn.
 [[nodiscard]] std::string forcePlot(const Trace& trace, const Scene& scene,
                                     const std::string& title);
 

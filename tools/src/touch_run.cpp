@@ -13,14 +13,14 @@
 namespace palpate::tools {
 namespace {
 
-/// Says what the files `kept` hold after so many ticks.
+/// Says what the files `kept` hold after `ticks` ticks.
 std::string hintOf(const std::string& kept, std::uint64_t ticks) {
   if (kept.empty()) return {};
   if (ticks == 0) return "no tick was felt yet, and none is in " + kept;
   return "the ticks until then are in " + kept;
 }
 
-/// None if the path was followed to its end.
+/// Nothing if the path was followed to its end.
 std::optional<Error> errorOf(const devices::ServoReport& servo, const std::string& hint) {
   const auto fault = [&](const char* code, const std::string& message) {
     return Error(ErrorKind::kDevice, {code, message, hint});
@@ -40,7 +40,7 @@ std::optional<Error> errorOf(const devices::ServoReport& servo, const std::strin
   return fault("device.fault", std::string(devices::textOf(servo.fault)));
 }
 
-/// A file that took no more: which, why, and what is there.
+/// The error for a file that could not be written further: which file, why, and what it holds.
 Error failureOf(const Error& failure) {
   Problem problem = failure.problem();
   problem.message += "; the session went on without it";
@@ -99,7 +99,7 @@ TouchRun runTouch(devices::Session& session, devices::Device& device, const Touc
   }
 
   TouchRun run;
-  // An hour may be left; nobody else talks while the session runs.
+  // The session may run for another hour; nothing else prints meanwhile.
   const auto tell = [&console](const Error& failure) {
     console.warn(failure.problem().file + ": " + failure.problem().message +
                  "; the session goes on without it");

@@ -1,6 +1,6 @@
 #pragma once
-/// A touch as it runs: the session, and all that uses its ticks, in constant memory however long it
-/// lasts.
+/// Runs a touch: the session, and everything that uses its ticks, in constant memory however long
+/// it takes.
 
 #include <optional>
 #include <string>
@@ -27,12 +27,12 @@ struct TouchRun {
 void announceRecords(OutputFiles& files, const TouchOptions& options,
                      const std::vector<std::string>& inputs);
 
-/// Runs `session` until the device or a stop ends it. The record has its name from before the first
-/// tick; the trace is in the file that `files` says. `wants_thin`: rows for pictures are asked for.
+/// Runs `session` until the device or a stop ends it. The record has its final name even before the
+/// first tick; the trace goes to the file that `files` says. `wants_thin`: keep rows for pictures.
 /// `more` gets the ticks as well.
-/// @throws Error: kOperation where a file took no more, once the session is over; kCancelled after
-/// a stop; kDevice if the device failed. What was felt until then is kept in either case: the trace
-/// then has its name too.
+/// @throws Error: kOperation if a file could not be written, once the session is over; kCancelled
+/// after a stop; kDevice if the device failed. The ticks until then are kept in each case: the
+/// trace then gets its final name too.
 [[nodiscard]] TouchRun runTouch(devices::Session& session, devices::Device& device,
                                 const TouchOptions& options, const RecordAbout& about,
                                 OutputFiles& files, Console& console, bool wants_thin,

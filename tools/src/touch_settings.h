@@ -1,5 +1,5 @@
 #pragma once
-/// How `touch` was asked to render, out of its options.
+/// Settings of the renderer from the options of `touch`.
 
 #include <string>
 
@@ -10,11 +10,11 @@
 
 namespace palpate::tools {
 
-/// --renderer, the paper's parameters and the limits of the force, but for their period. @throws
-/// Error (kUsage).
+/// From --renderer, the paper's parameters and the limits of the force, except their period.
+/// @throws Error (kUsage).
 [[nodiscard]] RendererSettings rendererSettings(const TouchOptions& o, const LengthUnit& unit);
 
-/// True if one of them was given.
+/// True if one of the paper's parameters was given.
 [[nodiscard]] bool givesPaperParameters(const TouchOptions& o);
 
 /// "paper" or "constraint".

@@ -57,9 +57,10 @@ TouchSummary TouchMeter::summary() const {
 void TouchMeter::visit(double t, const TickResult& r, std::span<const RegionEntry> entries) {
   if (!has_visit_) begin(t, entries.empty() ? r.region : entries.front().from);
   for (const RegionEntry& entry : entries) pass(t, entry);
-  // Depths count from where the probe first met a wall: pressed one, or passed a port.
+  // Depths count from the first wall that the probe met: one it pressed on, or one with a port it
+  // passed.
   if (!first_wall_ && (r.contact || r.event_count > 0)) first_wall_ = r.proxy;
-  // Entries that a full record dropped.
+  // The region may differ because a full record of entries dropped some.
   if (visit_.region != r.region) begin(t, r.region, depthOf(r.proxy));
   visit_.seconds = t - visit_.t;
   visit_.depth = std::max(visit_.depth, depthOf(r.proxy));
@@ -68,7 +69,7 @@ void TouchMeter::visit(double t, const TickResult& r, std::span<const RegionEntr
 }
 
 void TouchMeter::begin(double t, RegionId region, double depth) {
-  // One is kept free, for the one that goes on.
+  // Keep one place free for the visit that goes on.
   if (has_visit_ && summary_.visits.size() + 1 < TouchSummary::kMostListed) {
     summary_.visits.push_back(visit_);
   } else if (has_visit_) {
@@ -135,7 +136,7 @@ Json summaryJson(const TouchSummary& s, const Scene& scene) {
 std::string summaryText(const TouchSummary& s, const Scene& scene) {
   const double unit = scene.metersPerUnit();
   const std::string& name = scene.lengthUnit();
-  // A proxy stands off its wall by a rounding error, which does not count as a depth.
+  // A proxy stands off its wall by a rounding error, which does not count as depth.
   constexpr double kNoDepth = 1e-9;  // [m]
   const auto length = [&](double meters) {
     return formatNumber(meters < kNoDepth ? 0.0 : meters / unit, 4) + " " + name;

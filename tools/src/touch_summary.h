@@ -1,5 +1,5 @@
 #pragma once
-/// What a touch amounts to: regions in order, ports passed, forces, and how long a tick took.
+/// Summary of a touch: regions in order, ports passed, forces, and durations of ticks.
 
 #include <cstdint>
 #include <optional>
@@ -15,19 +15,20 @@
 
 namespace palpate::tools {
 
-/// A stay of the proxy in one region. Depths are of walls and of the proxy, never of the hand.
+/// A stay of the proxy in one region. Depths are those of walls and of the proxy, never of the
+/// hand.
 struct Visit {
   RegionId region = kOutside;
   double t = 0.0;        ///< [s] of entering
   double seconds = 0.0;  ///< [s] to the end of the stay
-  int port = -1;         ///< PortId that it was entered by; -1: by none
+  int port = -1;         ///< port by which it was entered; -1: none
   double rupture =
-      0.0;  ///< [N] elastic normal force that the wall into it gave way to; 0: it stood open
-  double entry_depth =
-      0.0;  ///< [m] of the wall it was entered by, straight from where the first wall was met
-  double depth = 0.0;  ///< [m] the same of the proxy, and of the wall it was left by, at most
-  /// [N] on the hand. Where the tip went all through it within one tick: what its far wall gave way
-  /// to, plus what its content took to be cut.
+      0.0;  ///< [N] elastic normal force at which the wall into it opened; 0: it was open
+  double entry_depth = 0.0;  ///< [m] depth of the wall by which it was entered, straight from where
+                             ///< the first wall was met
+  double depth = 0.0;  ///< [m] largest depth of the proxy, or of the wall by which it was left
+  /// [N] on the hand. If the tip crossed the whole region within one tick: the force at which its
+  /// far wall opened, plus the cutting force of its content.
   double peak_force = 0.0;
   std::uint64_t ticks = 0;  ///< that ended in it
 };
@@ -44,16 +45,17 @@ struct TouchSummary {
   std::uint64_t ticks = 0;
   double seconds = 0.0;  ///< [s] of hand time
   std::uint64_t contact_ticks = 0;
-  /// Ticks that ended before the proxy was at rest; the paper's renderer does not say.
+  /// Ticks that ended before the proxy was at rest; unset for the paper's renderer, which does not
+  /// report it.
   std::optional<UnsettledMeter> unsettled;
   bool met_something = false;    ///< a wall, a port, another region or a force
   double peak_force = 0.0;       ///< [N]
   Vec3 peak_force_at{0.0};       ///< [m] proxy
-  bool is_peak_at_wall = false;  ///< or that of contents, with no wall pressed
+  bool is_peak_at_wall = false;  ///< otherwise it is that of contents, with no wall pressed
   double work = 0.0;             ///< [J] on the hand, each force held until the next tick
   double source_work =
-      0.0;  ///< [J] HapticRenderer::sourceWork(), filled in by who has the renderer
-  /// The first kMostListed of each; of those that came later, how many.
+      0.0;  ///< [J] HapticRenderer::sourceWork(), filled in by the caller, which has the renderer
+  /// The first kMostListed of each, and how many came later.
   std::vector<Visit> visits;
   std::vector<PassedPort> ports;
   std::uint64_t more_visits = 0;
@@ -61,12 +63,12 @@ struct TouchSummary {
   double tick_median = 0.0, tick_p99 = 0.0, tick_p999 = 0.0, tick_max = 0.0;  ///< [ns]
 };
 
-/// Sums up ticks as they come, in constant memory.
+/// Sums up ticks as they arrive, in constant memory.
 class TouchMeter final : public devices::RecordSink {
  public:
   explicit TouchMeter(RendererKind kind);
   void add(const devices::RecordedTick& recorded, std::span<const RegionEntry> entries) override;
-  /// Of all ticks so far.
+  /// The summary of all ticks so far.
   [[nodiscard]] TouchSummary summary() const;
 
  private:
@@ -77,7 +79,7 @@ class TouchMeter final : public devices::RecordSink {
   [[nodiscard]] double depthOf(const Vec3& p) const;
 
   TouchSummary summary_;
-  Visit visit_;  ///< that goes on
+  Visit visit_;  ///< the present one
   bool has_visit_ = false;
   std::optional<Vec3> first_wall_;
   TickTimes times_;

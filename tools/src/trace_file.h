@@ -1,5 +1,5 @@
 #pragma once
-/// `touch --trace`: the ticks as CSV, written as they come.
+/// `touch --trace`: the ticks as CSV, written as they arrive.
 
 #include <string>
 
@@ -12,7 +12,7 @@ namespace palpate::tools {
 /// trace.
 class TraceFile final : public devices::RecordSink {
  public:
-  /// `file` is emptied; `name`: for messages. @throws Error (kOperation, record.write).
+  /// `file` is emptied; `name` is used in messages. @throws Error (kOperation, record.write).
   TraceFile(const std::string& file, std::string name, const Scene& scene);
   void add(const devices::RecordedTick& tick, std::span<const RegionEntry> entries) override;
   void flush() override;
@@ -20,7 +20,7 @@ class TraceFile final : public devices::RecordSink {
  private:
   devices::OutFile out_;
   TraceText format_;
-  std::string text_;  ///< that was not written yet
+  std::string text_;  ///< text that was not written yet
 };
 
 }  // namespace palpate::tools

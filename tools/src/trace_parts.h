@@ -1,5 +1,5 @@
 #pragma once
-/// A recorded tick as a row of a trace.
+/// Converts a recorded tick to a row of a trace.
 
 #include "palpate/devices/record.h"
 #include "palpate/render/trace.h"

@@ -11,8 +11,8 @@ namespace palpate::tools {
 namespace {
 
 constexpr std::size_t kColumns = 14;
-constexpr std::size_t kNumbers = 10;  // the first of them
-/// Beyond this no row goes on: a quote that nobody closed would take the whole file.
+constexpr std::size_t kNumbers = 10;  // number of leading columns that hold numbers
+/// Longest row: an unclosed quote must not take the whole file.
 constexpr std::size_t kLongestRow = 1U << 20U;
 
 }  // namespace
@@ -47,7 +47,7 @@ bool TraceReader::nextFields() {
       taken += line_.size();
       if (taken > kLongestRow || !nextLine()) fail("a quoted name has no end");
       fields_.back() += '\n';
-      i = static_cast<std::size_t>(-1);  // the next round begins the line
+      i = static_cast<std::size_t>(-1);  // the next round starts at the beginning of the line
     } else if (line_[i] == '"') {
       const bool is_doubled = is_quoted && i + 1 < line_.size() && line_[i + 1] == '"';
       if (is_doubled) {

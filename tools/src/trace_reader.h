@@ -18,7 +18,7 @@ struct TraceLine {
   Vec3 force{0.0};           ///< [N]
   std::string region;        ///< of the proxy
   bool contact = false;      ///< a closed wall is pressed
-  std::string ports;         ///< passed in this tick, ";" between
+  std::string ports;         ///< passed in this tick, separated by ";"
   std::int64_t tick_ns = 0;  ///< [ns]
   bool is_finite = true;     ///< false: a broken sensor's reading, which has no place
 };
@@ -31,10 +31,10 @@ class TraceReader {
   [[nodiscard]] bool next(TraceLine& row);
 
  private:
-  /// Splits the next row, of one line or, with line ends in quoted names, more.
+  /// Splits the next row, which is one line, or more if quoted names contain line ends.
   [[nodiscard]] bool nextFields();
   [[nodiscard]] bool nextLine();
-  /// An error at the line that was read last.
+  /// Throws an error at the line that was read last.
   [[noreturn]] void fail(std::string message, std::string hint = {}) const;
 
   std::string file_;

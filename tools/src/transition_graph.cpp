@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kNodeWidth = 150.0;
 constexpr double kNodeHeight = 46.0;
-constexpr double kColumn = 460.0;  ///< from one column's middle to the next
+constexpr double kColumn = 460.0;  ///< distance between the middles of two columns
 constexpr double kRow = 240.0;
 constexpr double kMargin = 60.0;
-constexpr double kHead = 70.0;  ///< of the page, for the title
-constexpr double kLine = 14.0;  ///< of a label
-constexpr double kBend = 44.0;  ///< between arrows that join the same two states
+constexpr double kHead = 70.0;  ///< height of the title at the top of the page
+constexpr double kLine = 14.0;  ///< height of a line of a label
+constexpr double kBend = 44.0;  ///< distance between arrows that join the same two states
 constexpr const char* kPort = "#0a8a66";
 constexpr const char* kFree = "#777777";
 
@@ -26,8 +26,8 @@ struct Spot {
   double y = 0.0;
 };
 
-/// How many arrows lie between the start and each state; one more than the most for those without a
-/// way.
+/// Number of arrows from the start to each state; one more than the largest number for states that
+/// cannot be reached.
 std::vector<std::size_t> columnsOf(std::span<const GraphState> states,
                                    std::span<const GraphArrow> arrows) {
   const std::size_t unknown = states.size();
@@ -80,7 +80,7 @@ std::string nodeSvg(const GraphState& state, const Spot& at) {
   return svg;
 }
 
-/// Where the straight way from `from` to `to` leaves the node at `from`.
+/// Where the straight line from `from` to `to` leaves the node at `from`.
 Spot borderOf(const Spot& from, const Spot& to) {
   const double x = to.x - from.x;
   const double y = to.y - from.y;
@@ -89,8 +89,8 @@ Spot borderOf(const Spot& from, const Spot& to) {
   return {from.x + x / share, from.y + y / share};
 }
 
-/// A bent arrow, and its label at `label_at` (0: its begin, 1: its end); `bend` is how far the
-/// middle lies to the left of the way.
+/// A curved arrow, with its label at `label_at` (0: its beginning, 1: its end); `bend` is how far
+/// its middle lies to the left of the straight line.
 struct ArrowSvg {
   std::string line;
   std::string label;
@@ -110,7 +110,7 @@ ArrowSvg arrowSvg(const GraphArrow& arrow, const Spot& from, const Spot& to, dou
              "' fill='none' stroke='" + color + "' stroke-width='1.6'" +
              (arrow.is_wall_absent ? " stroke-dasharray='6 4'" : "") + " marker-end='url(#" +
              (arrow.is_wall_absent ? "free" : "port") + ")'/>\n";
-  // On the outer side of the curve.
+  // The label is on the outer side of the curve.
   const double t = label_at;
   const auto along = [t](double first, double pull, double last) {
     return (1.0 - t) * (1.0 - t) * first + 2.0 * t * (1.0 - t) * pull + t * t * last;
@@ -169,15 +169,15 @@ std::string transitionSvg(const std::string& title, std::span<const GraphState> 
   std::map<std::pair<std::size_t, std::size_t>, int> drawn;
   std::string labels;
   for (const GraphArrow& arrow : arrows) {
-    // Each way bends to its own left, so that there and back lie apart.
+    // Each arrow bends to its own left, so that the two directions are drawn apart.
     const int before = drawn[{arrow.from, arrow.to}]++;
     const auto apart = columns[arrow.from] > columns[arrow.to]
                            ? columns[arrow.from] - columns[arrow.to]
                            : columns[arrow.to] - columns[arrow.from];
-    // Over states in between, further out.
+    // Farther out, over the states in between.
     const double over = apart > 1 ? 0.45 * kRow * static_cast<double>(apart - 1) : 0.0;
     const double bend = 0.5 * kBend + over + kBend * before;
-    // Nearer the column of more states, where arrows lie apart.
+    // The label goes nearer to the column with more states, where arrows are farther apart.
     const std::size_t begins = heights[columns[arrow.from]];
     const std::size_t ends = heights[columns[arrow.to]];
     const double label_at = begins == ends ? 0.5 : begins > ends ? 0.38 : 0.62;

@@ -9,7 +9,7 @@ namespace palpate::tools {
 
 struct GraphState {
   std::string name;
-  std::string note = {};  ///< a second line: content, or why it cannot be reached
+  std::string note = {};  ///< a second line: the content, or why the state cannot be reached
   bool is_start = false;
   bool is_reachable = true;
 };
@@ -21,8 +21,8 @@ struct GraphArrow {
   bool is_wall_absent = false;
 };
 
-/// An SVG page. States stand in columns by how many arrows lie between the start and them; those
-/// that no way leads to stand last.
+/// An SVG page. The column of a state is the number of arrows from the start to it; states that
+/// cannot be reached come last.
 [[nodiscard]] std::string transitionSvg(const std::string& title,
                                         std::span<const GraphState> states,
                                         std::span<const GraphArrow> arrows);

@@ -6,7 +6,7 @@
 
 namespace palpate::tools {
 
-/// Counts the ticks whose TickResult::settled is false, and how many come in a row.
+/// Counts the ticks whose TickResult::settled is false, and the longest run of them.
 class UnsettledMeter {
  public:
   void add(bool is_settled) noexcept {
@@ -18,7 +18,7 @@ class UnsettledMeter {
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] std::size_t longest() const noexcept { return longest_; }  ///< [ticks] in a row
-  /// Of all ticks; 0 of none.
+  /// Share of all ticks; 0 if there are none.
   [[nodiscard]] double share() const noexcept {
     return ticks_ > 0 ? static_cast<double>(count_) / static_cast<double>(ticks_) : 0.0;
   }

@@ -26,7 +26,7 @@ std::vector<vdb::Sampler> chosenSamplers(const std::vector<std::string>& names) 
   return chosen;
 }
 
-/// [m] as asked, the coarsest first and each once; empty if nothing was.
+/// [m] The requested voxel sizes, the coarsest first and each once; empty if none was requested.
 std::vector<double> askedVoxels(const AccuracyOptions& options, const LengthUnit& unit) {
   std::vector<double> voxels;
   const auto take = [&](std::string_view text, const char* what) {

@@ -18,13 +18,13 @@ namespace palpate::tools {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// Of a larger grid no bricks are made just to tell its error: they take several hundred MB.
+/// For a larger grid no bricks are made only to measure its error: they take several hundred MB.
 constexpr std::uint64_t kMostForBricks = 10'000'000;  // active voxels
 
 /// The grids as a table and as JSON.
 class GridList {
  public:
-  /// The added grid's JSON, for more to be said of it.
+  /// Returns the added grid's JSON, so that the caller can add to it.
   Json& add(const vdb::LevelSet& grid, double seconds) {
     const vdb::LevelSetInfo& info = grid.info();
     const double unit = info.meters_per_unit;
@@ -80,11 +80,12 @@ class GridList {
   std::vector<vdb::LevelSet> grids_;
 };
 
-/// What the grid of an analytic layer loses, as the default sampler feels it where that can be.
+/// Reports the error of an analytic layer's grid, as the default sampler feels it if possible.
 void tellError(const BakedGrid& baked, Json& json, Console& console) {
   if (!baked.analytic) return;
   const vdb::LevelSetInfo& info = baked.grid.info();
-  // A band too narrow for the spline would be widened first; between its voxels it tells the same.
+  // The spline would need a band that is too narrow to be widened first; the accessor shows the
+  // same errors between voxels.
   const bool is_cubic = !vdb::isTooNarrow(info) && info.active_voxels <= kMostForBricks;
   const vdb::Sampler sampler = is_cubic ? vdb::Sampler::kCubic : vdb::Sampler::kAccessor;
   const FieldPtr made = vdb::gridField(baked.grid, sampler);
@@ -107,9 +108,9 @@ void tellError(const BakedGrid& baked, Json& json, Console& console) {
       "parts as they are");
 }
 
-/// What was made here goes into the file with what contact may rely on. A grid of a file that is
-/// put into another form, a band too narrow to be read as it is, and distances without a side are
-/// looked at when they are touched.
+/// Certifies a grid that was made here, so that its file holds what contact may rely on. Grids
+/// converted from another file, bands too narrow to be read as they are, and unsigned distances are
+/// checked only when they are touched.
 vdb::LevelSet sure(const vdb::LevelSet& grid, const BakeOptions& options, Console& console) {
   const bool is_whole =
       !vdb::isTooNarrow(grid.info()) && !grid.info().metadata.contains(vdb::kDistanceKey);
@@ -157,7 +158,7 @@ Report run(const BakeOptions& options, const GeneralOptions& general, Console& c
     for (const LayerParts& layer : baked.layers) {
       for (const vdb::HybridPart& part : layer.parts) {
         parts.push_back(partJson(layer.layer, part));
-        // The time is that of the layer's parts together.
+        // The time is for all parts of the layer together.
         if (part.grid) (void)list.add(part.grid, layer.seconds);
       }
     }

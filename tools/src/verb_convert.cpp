@@ -26,13 +26,13 @@ bool isImageName(const std::string& path) {
   return vdb::hasExtension(path, ".nii") || vdb::hasExtension(path, ".nii.gz");
 }
 
-/// Whether the input is a grid of distances that nothing is asked to be done about.
+/// Whether the input is a grid of distances, and no option changes it.
 bool isTakenAsItIs(const BakeOptions& bake) {
   return inputKind(bake.input) == InputKind::kGrid && !bake.above && !bake.distances &&
          bake.labels.empty() && bake.voxel.empty();
 }
 
-/// Its level set; none if its voxels are not cubes along the axes, or no floats.
+/// The input's level set; null if its voxels are not cubes along the axes, or are not floats.
 vdb::LevelSet takenAsItIs(const BakeOptions& bake, Console& console) {
   try {
     return readLevelSet(bake, console).grid;
@@ -42,7 +42,7 @@ vdb::LevelSet takenAsItIs(const BakeOptions& bake, Console& console) {
   }
 }
 
-/// The one grid that a mesh or image file is made from.
+/// The only grid, from which a mesh or image file is made.
 vdb::LevelSet onlyGrid(const ConvertOptions& options, Console& console) {
   const BakeOptions& bake = options.bake;
   if (isTakenAsItIs(bake)) {
@@ -57,7 +57,7 @@ vdb::LevelSet onlyGrid(const ConvertOptions& options, Console& console) {
                    "choose one with --layer or --labels; `palpate bake` writes all to one .vdb");
 }
 
-/// The unit of the input's own numbers, for a mesh that is written where nothing else was asked.
+/// The unit of the mesh to write: the requested one, else that of the input's own numbers.
 std::string unitOf(const ConvertOptions& options, const vdb::LevelSet& grid) {
   if (!options.to_units.empty()) return options.to_units;
   return grid ? grid.info().length_unit : options.bake.units.empty() ? "mm" : options.bake.units;
@@ -105,7 +105,7 @@ Written asImage(const ConvertOptions& options, Console& console) {
   const bool as_it_is = isTakenAsItIs(options.bake);
   vdb::LevelSet grid = as_it_is ? takenAsItIs(options.bake, console) : onlyGrid(options, console);
   if (!grid) {
-    // A grid that is turned or stretched becomes an image that is as well, with the same voxels.
+    // A rotated or stretched grid becomes an image with the same placement and voxels.
     image = readDistances(options.bake, console);
     meters = lengthUnit(unitOfGrid(options.bake)).meters;
   } else {

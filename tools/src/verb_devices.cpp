@@ -16,7 +16,7 @@
 namespace palpate::tools {
 namespace {
 
-/// The table of states and events, as the loop has it.
+/// The table of states and events that the loop uses.
 Report statesReport() {
   Report report;
   report.json = {{"schema", "palpate.devices/1"}, {"states", Json::array()}};
@@ -38,19 +38,19 @@ Report statesReport() {
   return report;
 }
 
-/// A loop of zero force, and what the device said meanwhile.
+/// The result of a loop with zero force: what the device reported.
 struct Watched {
   devices::ServoReport servo;
   Box3 range;                 ///< [m]
   Vec3 mean{0.0, 0.0, 0.0};   ///< [m] of the last second
-  std::uint32_t buttons = 0;  ///< that were pressed
+  std::uint32_t buttons = 0;  ///< all that were pressed
 };
 
 /// Runs `device`, whose time ends after `seconds` [s]. @throws Error: as runServo(); kCancelled
 /// after a stop.
 Watched watch(devices::Device& device, double seconds, Console& console) {
   Watched out;
-  constexpr double kLast = 1.0;  // [s] that the mean is of
+  constexpr double kLast = 1.0;  // [s] interval of the mean
   Vec3 sum(0.0);
   std::uint64_t count = 0;
   const auto tick = [&](const devices::DeviceState& state) {
@@ -71,7 +71,7 @@ Watched watch(devices::Device& device, double seconds, Console& console) {
   return out;
 }
 
-/// Why the readings are of no use; empty if they are.
+/// Why the readings cannot be used; empty if they can.
 std::string failureOf(const Watched& w) {
   if (w.servo.fault != devices::SafetyFault::kNone) {
     return std::string(devices::textOf(w.servo.fault));

@@ -36,7 +36,7 @@ vdb::Image readNoted(const std::string& path, const vdb::ImageOptions& how, Cons
   return image;
 }
 
-/// How the labels are read; other images are one file each.
+/// How the labels are read; every other image is a single file.
 vdb::ImageOptions labelOptions(const ImportOptions& options) {
   vdb::ImageOptions how = imageOptions(options.reading);
   how.with.assign(options.scans.begin() + 1, options.scans.end());
@@ -49,8 +49,8 @@ vdb::Image readScan(const std::string& path, const ImportOptions& options, Conso
   return readNoted(path, imageOptions(options.reading), console);
 }
 
-/// `path`, as seen from the folder of the scene. One that was given as absolute stays so, unless it
-/// is in that folder or beneath it, so that the folder can be moved.
+/// `path` relative to the folder of the scene. An absolute path stays absolute, unless it is in
+/// that folder or below it, so that the folder can be moved.
 std::string seenFrom(const std::string& scene, const std::string& path) {
   if (path.empty()) return path;
   const fs::path folder = fs::absolute(scene).lexically_normal().parent_path();
@@ -65,7 +65,7 @@ std::vector<std::vector<int>> labelsOf(const RegionPlan& plan) {
   return labels;
 }
 
-/// Stiffness from an image that does not hold what it should is noted, not refused: a crop of bone
+/// An image for stiffness with unexpected values gets a note, and is not refused: a crop of bone
 /// may be bright all over.
 void tellOfStiffness(const vdb::Image& image, const vdb::Image& labels,
                      const ImportOptions& options, Console& console) {
@@ -91,7 +91,8 @@ void tellOfStiffness(const vdb::Image& image, const vdb::Image& labels,
   }
 }
 
-/// Empty if none is asked for. `image`: the one with gray values, or null.
+/// The voxels of the body; empty if no body is requested. `image`: the one with gray values, or
+/// null.
 vdb::VoxelMask bodyOf(const ImportOptions& options, const vdb::Image* image, ImportedScan& scan,
                       Console& console) {
   if (!options.body.empty()) {
@@ -110,8 +111,9 @@ vdb::VoxelMask bodyOf(const ImportOptions& options, const vdb::Image* image, Imp
   return vdb::bodyMask(*image, *options.skin, scan.labels, console.progress());
 }
 
-/// Air that reaches the border of the image is what is around: no region. With a body, labels of
-/// air that are in it as well (a sinus) stay, as their rest would become the body's.
+/// Air that reaches the border of the image is the outside, not a region. With a body, a label of
+/// air that has parts inside it (a sinus) stays a region; otherwise these parts would become part
+/// of the body's rest.
 void leaveOutAir(ImportedScan& scan, Console& console) {
   std::vector<PlannedRegion> kept;
   for (std::size_t r = 0; r < scan.plan.regions.size(); ++r) {
@@ -132,7 +134,7 @@ void leaveOutAir(ImportedScan& scan, Console& console) {
     }
     scan.open_air.push_back({region.name, region.labels, region.why, found.voxels, found.volume});
   }
-  // An image of nothing else keeps it.
+  // If there is nothing but air, keep it.
   if (kept.empty()) {
     scan.open_air.clear();
     return;
@@ -144,7 +146,7 @@ void leaveOutAir(ImportedScan& scan, Console& console) {
   scan.plan.regions = std::move(kept);
 }
 
-/// A body that lies elsewhere is a mistake; one that some labels stick out of gets a note.
+/// A body at another place is a mistake; a body that some labels stick out of gets a note.
 void checkBody(const ImportOptions& options, const ImportedScan& scan, Console& console) {
   const vdb::VoxelMask& body = scan.body;
   std::uint64_t labelled = 0;
@@ -167,7 +169,7 @@ void checkBody(const ImportOptions& options, const ImportedScan& scan, Console& 
                " labeled voxels are not in the body");
 }
 
-/// @throws Error that lists what fits no tissue.
+/// @throws Error that lists the labels without a tissue.
 void refuseUnknown(const ImportOptions& options, const ImportedScan& scan) {
   const double voxel = std::abs(glm::determinant(scan.labels.axes));
   std::string text;
@@ -224,8 +226,8 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
       scan.survey = vdb::surveyLabels(scan.labels, labels, in_body, console.progress());
     }
   }
-  // Slices are often thicker than their voxels are wide; a grid of the same volume holds what is
-  // there.
+  // Slices are often thicker than their voxels are wide; cubic voxels of the same volume resolve
+  // the contents.
   const double same_volume = std::cbrt(std::abs(glm::determinant(scan.labels.axes)));
   scan.voxel = options.voxel.empty()
                    ? std::round(same_volume * 1e5) * 1e-5  // hundredths of a millimeter
@@ -236,7 +238,7 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
   return scan;
 }
 
-/// One note for all: the report lists them.
+/// One note for all of them: the report lists them.
 void tellUnknown(const ImportedScan& scan, Console& console) {
   double volume = 0.0;
   std::size_t count = 0;

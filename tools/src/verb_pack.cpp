@@ -33,7 +33,7 @@ Error packError(std::string code, std::string message, std::string hint, std::st
                {std::move(code), std::move(message), std::move(hint), std::move(file)});
 }
 
-/// A folder beside the one that is wanted; gone again unless it was put in place.
+/// A new folder beside the target; the destructor removes it unless it was put in place.
 class NewFolder {
  public:
   NewFolder(std::string wanted, bool force) : wanted_(std::move(wanted)) {
@@ -103,7 +103,7 @@ void write(const fs::path& file, const std::string& text) {
   if (!out) throw packError("file.write", "writing failed", "", file.string());
 }
 
-/// The files of a scene, copied or stood for, under names within the bundle.
+/// The files of a scene, copied or replaced by stand-ins, under names within the bundle.
 class Files {
  public:
   Files(const LoadedScene& scene, const std::string& scene_file, const Node& root, fs::path bundle)
@@ -139,7 +139,7 @@ class Files {
                      {"hash", hashOf(file)}});
   }
 
-  /// In a folder of the bundle's files; under another name if that is taken.
+  /// Copies a file into a folder of the bundle; under another name if its name is taken.
   std::string copy(const fs::path& file, const std::string& folder, const char* role) {
     const fs::path to = bundle_ / kBundleFiles / folder;
     fs::create_directories(to);
@@ -165,7 +165,8 @@ class Files {
     throw inputError("pack.image", "there is no image '" + name + "'");
   }
 
-  /// All its files together, called as they are: headers name others.
+  /// Copies all files of a scan together under their own names, because headers refer to files by
+  /// name.
   std::string copyScan(const fs::path& file, const std::string& name) {
     const SceneImage& image = imageOf(name);
     const std::string folder = "scan_" + std::to_string(scan_folders_.size() + 1);
@@ -229,9 +230,9 @@ std::size_t gridsIn(const fs::path& folder) {
   return count;
 }
 
-/// Opens the bundle as if it were somewhere else: every grid in it must be found by its scene.
+/// Opens the bundle as a user elsewhere would: the scene must find every grid in it.
 void check(const fs::path& bundle) {
-  Console silent(true);  // what there is to say was said
+  Console silent(true);  // these notes were printed before
   keepNothing();
   const LoadedScene scene((bundle / kBundleScene).string(), silent);
   static_cast<void>(scene.compile(Purpose::kShow));
@@ -262,7 +263,7 @@ Report run(const PackOptions& options, const GeneralOptions& general, Console& c
   fillBundle(grids.string());
   LoadedScene loaded(options.scene, console);
   fillBundle({});
-  // Where layers are is asked before they are made, to leave some out.
+  // Ask for the layers' boxes before the layers are made, because scenes do that to leave some out.
   for (const LayerDescription& layer : loaded.description().layers) {
     if (layer.inside) static_cast<void>(layer.inside->bounds(console.progress()));
   }

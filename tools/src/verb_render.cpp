@@ -13,9 +13,9 @@
 namespace palpate::tools {
 namespace {
 
-constexpr int kSmallest = 320;  // [pixels] below this nothing can be read
+constexpr int kSmallest = 320;  // [pixels] smaller pictures cannot be read
 constexpr int kLargest = 8000;
-constexpr double kNearest = 1e-6;  // [m] of --around
+constexpr double kNearest = 1e-6;  // [m] least radius of --around
 
 Error usageError(std::string message, std::string hint = {}) {
   return Error(ErrorKind::kUsage, {"usage.render", std::move(message), std::move(hint)});
@@ -37,8 +37,9 @@ void parseSize(const std::string& text, PictureOptions& picture) {
   picture.height = number(1);
 }
 
-/// From the scene at the viewer; none: at a corner of the cut. In a scan the sides are the
-/// patient's, whose front is where y grows; in other scenes one looks along y, with x to the right.
+/// Direction from the scene to the viewer; not given: at a corner of the cut. In a scan the names
+/// of sides are the patient's, whose front is towards larger y; in other scenes one looks along y,
+/// with x to the right.
 std::optional<Vec3> parseView(const std::string& text, bool is_anatomical) {
   if (text == "corner") return std::nullopt;
   const std::pair<const char*, Vec3> names[] = {{"front", {0.0, is_anatomical ? 1.0 : -1.0, 0.0}},
@@ -84,7 +85,7 @@ SpaceView::Around parseAround(const std::string& text, const LengthUnit& unit) {
   return around;
 }
 
-/// What does not depend on the scene.
+/// Parses the options that do not depend on the scene.
 SpaceView parseSpace(const RenderOptions& options) {
   SpaceView view;
   view.toward = parseView(options.view, false);
@@ -109,7 +110,7 @@ SpaceView parseSpace(const RenderOptions& options) {
   return view;
 }
 
-/// What the options may not be together.
+/// Refuses combinations of options that make no sense.
 void checkOptions(const RenderOptions& o) {
   const bool is_moving = o.turn || o.replay;
   const bool is_cut = !o.plane.empty() || !o.cut.empty();

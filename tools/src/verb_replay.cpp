@@ -17,11 +17,11 @@
 namespace palpate::tools {
 namespace {
 
-/// The scene of the record, or the one that was asked for instead.
+/// The scene of the record, or another one if the user named it.
 struct ReplayScene {
   std::string file;
-  std::string text;         ///< of a mesh, image or grid
-  bool is_as_felt = false;  ///< it and the files that it names are what they were
+  std::string text;         ///< for a mesh, image or grid
+  bool is_as_felt = false;  ///< the scene and the files that it names have not changed
 };
 
 ReplayScene sceneOf(const ReplayOptions& options, const RecordAbout& about, Console& console) {
@@ -45,7 +45,8 @@ ReplayScene sceneOf(const ReplayOptions& options, const RecordAbout& about, Cons
   return {about.scene, about.scene_text, is_as_felt};
 }
 
-/// What `read` makes of the options in FILE.npy.json, whose faults are that file's, not of a
+/// Runs `read` on the options in FILE.npy.json, and reports faults as those of that file, not of a
+/// command line.
 /// command line.
 template <typename Read>
 auto fromOptions(const std::string& record, const Read& read) {
@@ -57,7 +58,7 @@ auto fromOptions(const std::string& record, const Read& read) {
   }
 }
 
-/// Where the session begins: at a state, if there is a good one.
+/// The state at which the session begins, if there is a suitable one.
 std::optional<devices::SessionState> stateFor(const ReplayOptions& options, const ReadAbout& read,
                                               const ReplayScene& scene, Console& console) {
   const std::uint64_t every = read.about.states_every;

@@ -30,7 +30,7 @@ PartKind kindOf(const std::string& file) {
   if (vdb::hasExtension(file, ".csv") || vdb::hasExtension(file, ".npy")) return PartKind::kTouch;
   if (vdb::hasExtension(file, ".yaml") || vdb::hasExtension(file, ".yml")) return PartKind::kScene;
   if (vdb::hasExtension(file, ".json")) {
-    // A scene may be JSON, too.
+    // A scene may also be JSON.
     const Json json = jsonOf(file);
     return json.is_object() && json.contains("schema") ? PartKind::kBench : PartKind::kScene;
   }
@@ -41,7 +41,7 @@ PartKind kindOf(const std::string& file) {
       file);
 }
 
-/// The scene that was felt, if it is still what it was; else why it is not shown.
+/// The scene that was felt, if it has not changed; otherwise the reason why it is not shown.
 std::unique_ptr<LoadedScene> feltScene(const RecordAbout& about, Console& console,
                                        std::string& why_not) {
   std::error_code failed;
@@ -69,7 +69,7 @@ Report run(const ReportOptions& options, const GeneralOptions& general, Console&
     throw usage("--rate is of a device", "add --device NAME");
   }
   const double rate = options.rate.value_or(1000.0);
-  (void)simulationOf(options.device, rate);  // errors in it come before any work
+  (void)simulationOf(options.device, rate);  // reports errors in these options before any work
   OutputFiles files(general);
   files.announce(options.output, options.inputs);
 
@@ -95,7 +95,8 @@ Report run(const ReportOptions& options, const GeneralOptions& general, Console&
 
   HtmlPage page("Palpate: " + joined(names));
   for (const Touch& touch : touches) addTouchChapter(page, touch);
-  // Whose path is drawn where: with one touch and one scene there is no doubt.
+  // A path is drawn into a scene only if there is one touch and one scene: then they belong
+  // together.
   const bool is_pair = touches.size() == 1 && scenes.size() == 1;
   for (const std::string& file : scenes) {
     const LoadedScene loaded(file, console);

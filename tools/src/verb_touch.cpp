@@ -33,7 +33,7 @@ bool hasMotion(const TouchOptions& o) {
            o.insert.empty());
 }
 
-/// Presses on a place of the shape's surface that is found from above.
+/// Sets the options to press on the highest place of the shape's surface.
 void pressOnSurface(const Scene& scene, TouchOptions& options, Console& console) {
   const SurfacePoint found = findSurfacePoint(scene);
   const auto text = [](const Vec3& v) {
@@ -60,10 +60,11 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   } else {
     refuseShapeOptions(options);
   }
-  if (finds_place) options.press = "0,0,0";  // for now: its parameters apply
+  // A placeholder, so that the options of a press are accepted
+  if (finds_place) options.press = "0,0,0";
   checkMotion(options);
   checkDevice(options);
-  (void)forceLimits(options);  // errors in them come before any work
+  (void)forceLimits(options);  // reports errors in them before any work
   std::unique_ptr<devices::Device> device;
   if (is_real) device = makeRealDevice(options.device.name, options.real, options.seconds);
   const std::vector<ContentSetting> content_settings = readSettings(options.set);
@@ -105,7 +106,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
                  "the paper's renderer",
                  "add --renderer paper"});
   }
-  // A picture shows all layers, and so does the paper's table.
+  // A picture shows all layers, and the paper's table needs them all.
   const bool wants_all = is_paper || !options.image.empty();
   const ScenePtr scene = loaded.compile(wants_all ? Purpose::kShow : Purpose::kTouch);
   if (finds_place) pressOnSurface(*scene, options, console);
@@ -181,7 +182,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
     report.json["realtime"] = realtimeJson(servo_report, is_paced_by_device);
   }
   if (is_real) report.json["safety"] = safetyJson(servo_report);
-  // A hand that presses on a point means to meet something there.
+  // A hand that presses on a point should meet something there; if not, the answer is negative.
   const bool is_press = !options.press.empty() || !options.tap.empty();
   report.is_yes = !is_press || summary.met_something;
   report.json["met_something"] = summary.met_something;

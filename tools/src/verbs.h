@@ -1,5 +1,5 @@
 #pragma once
-/// The verbs. Each does its work, writes its files and says what came out; each throws
+/// The verbs. Each does its work, writes its files and returns its report; each throws
 /// palpate::Error.
 
 #include "console.h"

@@ -8,7 +8,7 @@
 namespace palpate::tools {
 namespace {
 
-/// Over what the wall pushes back with: a hand feels more than that as a pull to the side.
+/// Share of the wall's force above which a hand feels the sideways force as a pull.
 constexpr double kMuchSideways = 0.5;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-/// What is to be said of a scene's walls before they are felt: sharp contrasts of stiffness, and
-/// shading that looks further than a grid knows.
+/// Notes on a scene's walls before they are felt: sharp contrasts of stiffness, and shading that
+/// needs a wider band than a grid has.
 
 #include <string>
 #include <vector>
@@ -14,11 +14,11 @@ struct WallNote {
   std::string code;  ///< "scene.contrast" or "scene.shading_band"
   std::string text;
   Vec3 place{0.0, 0.0, 0.0};  ///< [m]
-  bool is_warning = false;    ///< worth to be said before every run; else in `explain` only
+  bool is_warning = false;    ///< worth printing before every run; others appear in `explain` only
   Json json;
 };
 
-/// Of a compiled scene, as the `constraint` renderer feels it. Lengths in texts are in the scene's
+/// For a compiled scene, as the `constraint` renderer feels it. Lengths in texts are in the scene's
 /// unit.
 [[nodiscard]] std::vector<WallNote> wallNotes(const Scene& scene);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Work beside what is measured: of `palpate bench servo` and of tests/bench.
+/// Load on the machine during a measurement, for `palpate bench servo` and tests/bench.
 
 #include <atomic>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Threads that compute until they go.
+/// Threads that compute until the object is destroyed.
 class BusyThreads {
  public:
   explicit BusyThreads(unsigned count) {

@@ -12,7 +12,7 @@ namespace palpate::vdb {
 namespace {
 
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
-/// [bytes] From this size on: a page more or less is not a loss then.
+/// [bytes] Huge pages are used from this size on, so that rounding up by a page wastes little.
 constexpr std::size_t kWorthHugePages = 2 * kHugePage;
 
 }  // namespace

@@ -7,8 +7,9 @@
 
 namespace palpate::vdb {
 
-/// Memory in huge pages where it is large and the system has some; std::free() gives it back. A
-/// wish: without them all works, only slower. @throws std::bad_alloc
+/// Allocates memory, in huge pages if it is large and the system has some; free it with
+/// std::free(). Huge pages are only a request: without them everything works, but slower. @throws
+/// std::bad_alloc
 [[nodiscard]] void* allocateHuge(std::size_t bytes, std::size_t alignment);
 
 template <typename T>
@@ -28,8 +29,8 @@ struct HugeAllocator {
   }
 };
 
-/// For blocks of some kilobytes each, read across many neighbors: with small pages, most of the
-/// time goes into finding where they are.
+/// For blocks of some kilobytes each that are read together with many neighbors: with small pages,
+/// most of the time would go into address translation.
 template <typename T>
 using HugeVector = std::vector<T, HugeAllocator<T>>;
 

@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Nobody waits longer for another process that makes a grid: it may be stopped.
+/// Longest wait for another process that makes the same grid: that process may have been stopped.
 constexpr auto kMostWait = std::chrono::minutes(15);
 constexpr std::uint64_t kNoBound = ~std::uint64_t{0};
 constexpr auto kWaitStep = std::chrono::milliseconds(20);
@@ -31,7 +31,7 @@ std::string widenedNote(double half_width) {
          shortNumber(kCubicHalfWidth, 6) + ", with distances to the closest points of the surface";
 }
 
-/// A grid, and the facts and notes about it.
+/// A grid, with facts and notes about it.
 struct Made {
   LevelSet grid;
   KeptFacts facts;
@@ -57,7 +57,7 @@ class Maker {
       if (keeps) content = source_.content(named);
       const std::string key = keeps && content.files.isKnown() ? content.grid.text() : "";
       if (!find(key, made)) {
-        // An exact field is as quick to make as a grid is to read.
+        // Making an exact field takes no longer than reading a grid.
         if (source_.ways.instead) {
           if (FieldPtr exact = source_.ways.instead(named)) return exact;
         }
@@ -129,7 +129,7 @@ class Maker {
     return true;
   }
 
-  /// One process makes it. Who waited looks again.
+  /// Only one process makes the grid. A process that has waited looks for it again.
   void makeOrWait(const std::string& key, const SourceState& files, const Progress& progress,
                   Made& made) const {
     if (!cache_.isUsable()) {
@@ -156,7 +156,7 @@ class Maker {
                  "its file must not change meanwhile, and the disk needs room", source_.file});
   }
 
-  /// With the facts, and without the way to its source, which is nobody else's business.
+  /// The grid with its facts, but without the path of its source, which concerns nobody else.
   [[nodiscard]] LevelSet toKeep(const Made& made) const {
     const LevelSet grid = made.grid.named(source_.name, {{"source", fileName(source_.file)}});
     return withFacts(grid, made.facts, source_.what);

@@ -1,5 +1,5 @@
 #pragma once
-/// Fields of a scene that are grids, made when they are first asked for and kept for the next time.
+/// Fields of a scene that are grids, made when they are first asked for and kept for the next run.
 
 #include <functional>
 #include <map>
@@ -16,7 +16,7 @@
 
 namespace palpate::vdb {
 
-/// What the makers need after the scene file is read and its readers are gone.
+/// Objects that the makers need after the scene file is read and its readers are gone.
 struct Common {
   RegisterOptions options;
   BundleOptions bundle;
@@ -25,24 +25,25 @@ struct Common {
 };
 using CommonPtr = std::shared_ptr<Common>;
 
-/// What a grid is made of.
+/// Keys of a grid's content.
 struct GridContent {
-  SourceState files;  ///< what was made while they changed is not kept
-  ContentKey grid;    ///< of the source and of all that counts in how it is made
-  ContentKey box;     ///< of what counts where only its place is asked for
+  SourceState files;  ///< if these change while the grid is made, it is not kept
+  ContentKey grid;    ///< depends on the source and on everything that affects the grid
+  ContentKey box;     ///< depends on everything that affects the grid's box
 };
 
-/// Other ways than a grid alone.
+/// Ways to use a mesh other than as a grid alone.
 struct MeshWays {
   std::function<FieldPtr(const Progress&)> instead =
-      {};  ///< tried first; null where a grid is needed
-  std::function<FieldPtr(FieldPtr, const LevelSet&)> finish = {};  ///< of the grid's whole field
+      {};  ///< tried first; returns null where a grid is needed
+  /// Makes the final field of the grid's field
+  std::function<FieldPtr(FieldPtr, const LevelSet&)> finish = {};
 };
 
 struct GridSource {
   std::string what;  ///< names the grid in progress and records
   std::string summary;
-  SourcePlace place;  ///< of the scene: what the maker finds wrong is reported there
+  SourcePlace place;  ///< in the scene: errors of the maker are reported there
   Sampler sampler = Sampler::kCubic;
   std::function<LevelSet(const Progress&)> make;
   std::function<Box3(const Progress&)> measure;
@@ -51,13 +52,13 @@ struct GridSource {
 
   /// Not given: the grid is made each time.
   std::function<GridContent(const Progress&)> content = {};
-  std::string name = {};                             ///< of a grid that was kept
-  std::map<std::string, std::string> metadata = {};  ///< of a grid that was kept, beside its own
-  std::string file = {};                             ///< that notes are about, if not `what`
+  std::string name = {};                             ///< for a grid that was kept
+  std::map<std::string, std::string> metadata = {};  ///< for a grid that was kept, beside its own
+  std::string file = {};  ///< the file that notes are about, if not `what`
 };
 
-/// A field that makes its grid when it is first asked for it, or takes the one that was kept of the
-/// same content; of several processes one makes it, and the others wait.
+/// A field that makes its grid when it is first asked for, or takes one that was kept with the same
+/// content. If several processes need it, one makes it, and the others wait.
 [[nodiscard]] FieldSourcePtr lazyField(const CommonPtr& common, GridSource source);
 
 }  // namespace palpate::vdb

@@ -1,5 +1,5 @@
 #pragma once
-/// Progress of work that is one of several.
+/// Progress of one of several tasks.
 
 #include <string>
 #include <utility>
@@ -8,7 +8,7 @@
 
 namespace palpate::vdb {
 
-/// `progress`, told each step as "what: step".
+/// Forwards to `progress`, with each step named "what: step".
 [[nodiscard]] inline Progress namedProgress(const Progress& progress, std::string what) {
   if (!progress) return {};
   return [progress, what = std::move(what)](std::string_view step, double fraction) {

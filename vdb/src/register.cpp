@@ -29,15 +29,15 @@
 namespace palpate::vdb {
 namespace {
 
-/// A grid that comes out of this module's own hands.
+/// Options for a grid that this module made itself.
 CertifyOptions madeHere() {
   CertifyOptions options;
   options.is_foreign = false;
   return options;
 }
 
-/// To be raised whenever what is baked of the same source changes: grids that were kept before are
-/// made again then. A test says when.
+/// Raise this whenever baking the same source gives another grid: grids that were kept before are
+/// then made again. A test shows when.
 constexpr int kBakerVersion = 1;
 
 ContentKey beginKey(const char* kind) {
@@ -46,14 +46,14 @@ ContentKey beginKey(const char* kind) {
   return key;
 }
 
-/// What counts in how a grid is made, beside its name.
+/// Adds everything that affects a grid, except its name.
 void addHow(ContentKey& key, const BakeOptions& bake, Sampler sampler) {
   key.add(bake.voxel_size).add(bake.half_width).add(bake.length_unit);
   key.add(static_cast<int>(bake.mesh_sign)).add(bake.shell_thickness).add(bake.smooth_angle);
   key.add(static_cast<int>(sampler));
 }
 
-/// How a mesh becomes a solid.
+/// Reads how a mesh becomes a solid.
 void readMeshKeys(const MapReader& reader, BakeOptions& bake) {
   constexpr MeshSign kSigns[] = {MeshSign::kVote, MeshSign::kWinding, MeshSign::kFlood};
   bake.mesh_sign = kSigns[reader.choice("sign")];
@@ -67,7 +67,7 @@ Box3 boxOf(const Mesh& mesh) {
   return box;
 }
 
-/// Whether edges of a mesh of flat faces stay sharp: unless a grid is asked for.
+/// Whether edges of a mesh of flat faces stay sharp: they do unless the scene asks for a grid.
 bool readEdges(const MapReader& reader) {
   if (reader.has("edges")) return reader.choice("edges") == 0;
   constexpr const char* kOfGrids[] = {"voxel", "half_width", "sampler", "shell", "smooth"};
@@ -75,7 +75,7 @@ bool readEdges(const MapReader& reader) {
                       [&](const char* key) { return reader.has(key); });
 }
 
-/// [rad] The angle at `sharp`; 0 if it is not there.
+/// [rad] The angle at `sharp`; 0 if it is not given.
 double readSharp(const MapReader& reader) {
   for (const std::string& key : reader.words("sharp").excludes) {
     if (!reader.has("sharp") || !reader.has(key)) continue;
@@ -153,10 +153,11 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
   };
   source.ways = std::move(ways);
   source.certify = madeHere();
-  // As it was read, whatever files it is made of and whatever unit they have.
+  // The key depends on the mesh as it was read, whatever files it comes from and whatever their
+  // unit.
   source.content = [path, read, bake, sampler](const Progress& progress) {
     GridContent content;
-    // Nobody sees when the files change that a .gltf names.
+    // Changes of the files that a .gltf names are not noticed.
     if (!namesOtherFiles(path)) content.files = SourceState({path});
     const Mesh mesh = read(progress);
     content.grid = beginKey("mesh");
@@ -240,7 +241,7 @@ FieldSourcePtr maskField(const CommonPtr& common, const MapReader& reader) {
   return lazyField(common, std::move(source));
 }
 
-/// The image a layer names, and what its grid will be called.
+/// The image that a layer names, and the name of the layer's grid.
 struct LayerImage {
   std::string name;
   std::shared_ptr<SceneImage> image;
@@ -260,7 +261,7 @@ struct LayerImage {
     bake.metadata["layer"] = layer;
   }
 
-  /// What all layers of images have in common.
+  /// The parts of a GridSource that all layers of images share.
   [[nodiscard]] GridSource source(const std::string& layer, std::string summary) const {
     GridSource out;
     out.what = layer;
@@ -275,7 +276,7 @@ struct LayerImage {
     return out;
   }
 
-  /// Of the image's files and `kind`.
+  /// The content key of the image's files and `kind`.
   [[nodiscard]] static GridContent content(ImageFile& file, const char* kind) {
     GridContent out;
     out.files = file.state();
@@ -317,7 +318,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, const MapReader
                                         const std::string& layer) {
   const LayerImage from(reader, layer, common->options.max_memory);
   const std::vector<int> values = readMatch(reader, *from.image);
-  // Several labels have the color of the first that has one.
+  // A layer of several labels has the color of the first one that has a color.
   for (const int value : values) {
     const auto color = from.image->labels.colors.find(value);
     if (color == from.image->labels.colors.end()) continue;
@@ -344,7 +345,7 @@ SceneRegistry::LayerSurface labelsLayer(const CommonPtr& common, const MapReader
     content.box = content.grid;
     content.box.add("box");
     for (const int value : image->layers[index]) content.box.add(value);
-    // Neighbors have a say in where a layer ends.
+    // The border of a layer depends on its neighbors.
     for (const std::vector<int>& labels : image->layers) {
       content.grid.add(labels.size());
       for (const int value : labels) content.grid.add(value);

@@ -1,5 +1,5 @@
 #pragma once
-/// The kinds of numbers that images and meshes have in their files.
+/// The number types that image and mesh files use.
 
 #include <algorithm>
 #include <cstddef>
@@ -25,7 +25,7 @@ enum class Scalar {
   kFloat64
 };
 
-/// use(a number of that kind), which is 0.
+/// Calls use() with a 0 of that type.
 template <typename Use>
 decltype(auto) withKind(Scalar kind, const Use& use) {
   switch (kind) {
@@ -63,13 +63,13 @@ decltype(auto) withKind(Scalar kind, const Use& use) {
 /// "uint8"
 [[nodiscard]] const char* nameOf(Scalar kind) noexcept;
 
-/// What a format calls a kind.
+/// A format's name for a type.
 struct ScalarName {
   std::string_view name;
   Scalar kind;
 };
 
-/// The kind that one of `names` means; nothing if none is `name`.
+/// The type whose name in `names` is `name`; nothing if there is none.
 template <typename Names>
 [[nodiscard]] std::optional<Scalar> scalarCalled(std::string_view name, const Names& names) {
   const auto at = std::find_if(std::begin(names), std::end(names),

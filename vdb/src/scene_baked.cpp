@@ -45,7 +45,7 @@ double longestSide(const Field& field) {
   return std::max({size.x, size.y, size.z});
 }
 
-/// Tells what became of the parts, each grid and each decision.
+/// Reports each part's grid, and each decision about a part.
 void tell(const RegisterOptions& options, const std::string& what, const Hybrid& made,
           double seconds) {
   bool is_first = true;
@@ -53,13 +53,13 @@ void tell(const RegisterOptions& options, const std::string& what, const Hybrid&
     const std::string name = part.name.empty() ? what : what + ", part " + part.name;
     if (options.on_note) options.on_note(name + " " + part.reason);
     if (!part.grid || !options.on_grid) continue;
-    // The time is that of all together.
+    // The time is for all grids together, and reported once.
     options.on_grid({name, part.grid.info(), is_first ? seconds : 0.0});
     is_first = false;
   }
 }
 
-/// The file that the grids are in; empty: they are made.
+/// The file that holds the grids; empty: grids are made.
 std::string readFile(const MapReader& reader) {
   if (!reader.has("file")) return {};
   for (const std::string& key : reader.words("file").excludes) {
@@ -72,7 +72,7 @@ std::string readFile(const MapReader& reader) {
   return readExistingFile(reader, "file");
 }
 
-/// `field` with the grids of the file at `path` in the place of its parts: that of part 2.1 is
+/// `field` with its parts replaced by the grids of the file at `path`. The grid of part 2.1 is
 /// called NAME/2.1, where NAME is the one in `asked`.
 FieldPtr withSaved(const FieldPtr& field, const std::string& path, const HybridOptions& asked,
                    const std::string& what, const RegisterOptions& options) {
@@ -81,7 +81,7 @@ FieldPtr withSaved(const FieldPtr& field, const std::string& path, const HybridO
   for (const VdbGridSummary& summary : listVdb(path)) {
     const bool is_whole = summary.name == name;
     if (!is_whole && !summary.name.starts_with(name + "/")) continue;
-    // As for a grid that a scene names: repairs are reported.
+    // Repairs are reported, as for a grid that a scene names.
     CertifyOptions certify;
     certify.sampler = asked.sampler;
     certify.path = path;

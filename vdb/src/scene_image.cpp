@@ -66,11 +66,11 @@ const std::string& ImageFile::contentKey() {
   if (key_.empty()) {
     ContentKey key;
     state_ = SourceState(imageFiles(path_, options_), key, folders());
-    // The voxels that are known may be those of another file.
+    // The known voxels may come from an earlier version of the file.
     if (image_ && !state_.isOfTheSame(decoded_)) state_ = {};
     key.add(static_cast<int>(options_.affine)).add(static_cast<int>(options_.space));
     key.add(options_.frame.value_or(-1)).add(options_.series);
-    // Their order is that of the labels.
+    // Their order is the order of the labels.
     for (const std::string& file : options_.with) key.add(fileName(file));
     key.add("priority");
     for (const std::string& name : options_.priority) key.add(name);
@@ -146,7 +146,7 @@ ImageOptions readImageOptions(const MapReader& reader) {
   return options;
 }
 
-/// What tells one way to read a file from another.
+/// A key that distinguishes ways to read a file.
 std::string keyOf(const std::string& path, const ImageOptions& options) {
   std::string key = path + '\n' + std::to_string(static_cast<int>(options.affine)) + '\n' +
                     std::to_string(static_cast<int>(options.space)) + '\n' +

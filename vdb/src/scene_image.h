@@ -1,6 +1,6 @@
 #pragma once
-/// `images:` of a scene: files that are looked at when the scene is read, and read when a layer
-/// needs their voxels.
+/// `images:` of a scene: their headers are read with the scene, and their voxels when a layer needs
+/// them.
 
 #include <functional>
 #include <map>
@@ -19,15 +19,15 @@
 
 namespace palpate::vdb {
 
-/// Says each note about a file once.
+/// Reports each note about a file once.
 class Notes {
  public:
   explicit Notes(std::function<void(const std::string&)> tell) : tell_(std::move(tell)) {}
   void add(const std::string& path, const std::vector<std::string>& notes);
 
-  /// What a note is about, and the note.
+  /// The subject of a note, and the note.
   using List = std::vector<std::pair<std::string, std::string>>;
-  /// As long as it lives, all that is added goes to a list too, also what was said before.
+  /// While it exists, it collects all notes that are added, including those reported before.
   class Listener {
    public:
     Listener(Notes& notes, List& list) : notes_(notes) { notes.list_ = &list; }
@@ -50,22 +50,24 @@ class ImageFile {
  public:
   ImageFile(std::string path, ImageOptions options, std::shared_ptr<Notes> notes)
       : path_(std::move(path)), options_(std::move(options)), notes_(std::move(notes)) {}
-  /// What stands for the file at `path` in a bundle.
+  /// The stand-in for the image file at `path` in a bundle.
   ImageFile(std::string path, std::string content_key, std::shared_ptr<Notes> notes);
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  /// @throws Error (kInput): what readImage() throws, and pack.no_scan if only a stand-in is there.
+  /// @throws Error (kInput): everything readImage() throws, and pack.no_scan if only a stand-in is
+  /// there.
   [[nodiscard]] const Image& image();
-  /// [m] The box around the voxels of these labels, as boxWhere() has it. The image is walked once
-  /// for all calls.
+  /// [m] The box around the voxels of these labels, as by boxWhere(). The image is scanned once for
+  /// all calls.
   [[nodiscard]] Box3 boxOfLabels(const std::vector<int>& labels);
 
-  /// Of the bytes of all its files, which are read once, and of how they are understood.
+  /// Key of the bytes of all its files, which are read once, and of the options by which they are
+  /// read.
   [[nodiscard]] const std::string& contentKey();
-  /// Those files as they were then.
+  /// The state of those files when they were read.
   [[nodiscard]] const SourceState& state();
 
  private:
-  /// In which a file more or less makes another image.
+  /// Folders in which adding or removing a file would change the image.
   [[nodiscard]] std::vector<std::string> folders() const;
   [[nodiscard]] std::vector<std::string> foldersAndFiles() const;
 
@@ -76,19 +78,20 @@ class ImageFile {
   std::optional<std::map<float, Box3>> boxes_;
   std::string key_;
   SourceState state_;
-  SourceState decoded_;  ///< what `image_` was read from, as it was before that
+  SourceState decoded_;  ///< state of the files before `image_` was read from them
   bool has_voxels_ = true;
 };
 
 /// One entry of `images:`.
 struct SceneImage {
   std::shared_ptr<ImageFile> file;
-  LabelTable labels;       ///< of the table that is named, else of the image itself
+  LabelTable labels;       ///< from the table that the scene names, else from the image itself
   std::string names_path;  ///< empty if there is none
-  /// The labels of each layer that comes from this image, as the scene is read; they share walls.
+  /// The labels of each layer that comes from this image, collected as the scene is read; these
+  /// layers share walls.
   std::vector<std::vector<int>> layers;
 
-  /// Made when it is first asked for: by then all layers are known.
+  /// Made on first use: by then all layers are known.
   [[nodiscard]] LabelSurfaces& surfaces();
 
  private:
@@ -96,7 +99,7 @@ struct SceneImage {
   std::size_t layers_then_ = 0;
 };
 
-/// Makes SceneImages; a file that two entries name, and read alike, is shared.
+/// Makes SceneImages; entries that name one file and read it alike share it.
 class SceneImages {
  public:
   SceneImages(std::shared_ptr<Notes> notes, std::function<void(const ImageRecord&)> tell)
@@ -106,14 +109,14 @@ class SceneImages {
  private:
   std::shared_ptr<Notes> notes_;
   std::function<void(const ImageRecord&)> tell_;
-  /// By path and by how it is read. Weak: voxels go when their scene goes.
+  /// By path and options. Weak pointers: voxels are freed with their scene.
   std::map<std::string, std::weak_ptr<ImageFile>> files_;
 };
 
 /// `space:` RAS or LPS; not given: as the file says.
 [[nodiscard]] Space readSpace(const MapReader& reader);
 
-/// `error`, met while the file named by `key` was looked at, told at that key of the scene.
+/// `error`, which occurred while reading the file named by `key`, placed at that key of the scene.
 [[nodiscard]] Error atKey(const MapReader& reader, std::string_view key, const Error& error);
 
 }  // namespace palpate::vdb

@@ -14,12 +14,12 @@
 namespace palpate::vdb {
 namespace {
 
-/// Of the span between the least and the most value of a transfer function: far below what a hand
-/// can tell apart (some percent), and met by 16 bits.
+/// Relative to the range of a transfer function: far below what a hand can tell apart (some
+/// percent), and within reach of 16 bits.
 constexpr double kDefaultTolerance = 1e-5;
 
-/// A quantity of `kind` [SI unit], a length in the scene's unit too, or a number for a ratio;
-/// nothing if it is none.
+/// Reads a quantity of `kind` [SI unit], a length also in the scene's unit, or a number for a
+/// ratio; nothing if it is none of these.
 std::optional<double> quantityOf(const SceneLoader& loader, const Node& node,
                                  std::optional<Dimension> dimension) {
   if (node.kind != Node::Kind::kScalar || node.quoted) return {};
@@ -94,7 +94,7 @@ Transfer readTransfer(const MapReader& reader, const ParameterKind& of) {
   return transfer;
 }
 
-/// Told as a note: what the reader decided.
+/// Adds a note on what the reader decided.
 void tell(const RegisterOptions& options, const ParameterKind& of, const MaterialGrid& grid) {
   if (!options.on_note) return;
   const Quantisation& how = grid.info().quantisation;

@@ -1,11 +1,11 @@
-// Four doubles or eight floats at a time, for kernels. No include guard: a kernel is a translation
-// unit for one instruction set, and includes this once, after PALPATE_TARGET names the
-// instructions; without it, it is for every processor.
+// Operations on four doubles or eight floats at a time, for kernels. No include guard: a kernel is
+// a translation unit for one instruction set. It defines PALPATE_TARGET as that set and includes
+// this file once; without PALPATE_TARGET it is compiled for every processor.
 //   PALPATE_KERNEL  before every function of a kernel
 //   PALPATE_ENTRY   before those that are called from elsewhere
 // Attributes rather than compiler flags, so that no inline function of another header is compiled
-// for more than the least processor. Only the operations that say so are fused: all others give the
-// same bits for every instruction set.
+// for more than the baseline processor. Only the operations that say so are fused: all others give
+// the same bits for every instruction set.
 
 #include <cstdint>
 
@@ -59,8 +59,8 @@ PALPATE_KERNEL Doubles fnma(Doubles a, Doubles b, Doubles c) noexcept {
 PALPATE_KERNEL Doubles all(double a) noexcept { return Doubles{a, a, a, a}; }
 PALPATE_KERNEL Floats all(float a) noexcept { return Floats{a, a, a, a, a, a, a, a}; }
 
-/// The same, where much is made of it: on all lanes at once. The compiler would reckon with one
-/// lane and copy each of the results.
+/// The same, for a value that many results are computed from. Otherwise the compiler would compute
+/// with one lane and copy each result.
 PALPATE_KERNEL Doubles allOnce(double a) noexcept {
   Doubles lanes = all(a);
 #if defined(PALPATE_TARGET)
@@ -69,7 +69,7 @@ PALPATE_KERNEL Doubles allOnce(double a) noexcept {
   return lanes;
 }
 
-/// Eight floats from anywhere.
+/// Loads eight floats, at any alignment.
 PALPATE_KERNEL Floats load(const float* from) noexcept {
   Floats lanes;
   __builtin_memcpy(&lanes, from, sizeof lanes);
@@ -77,7 +77,7 @@ PALPATE_KERNEL Floats load(const float* from) noexcept {
 }
 PALPATE_KERNEL void store(Floats a, float* to) noexcept { __builtin_memcpy(to, &a, sizeof a); }
 
-/// Four floats from anywhere.
+/// Loads four floats, at any alignment, as doubles.
 PALPATE_KERNEL Doubles loadWidened(const float* from) noexcept {
 #if defined(PALPATE_TARGET)
   return _mm256_cvtps_pd(_mm_loadu_ps(from));
@@ -86,7 +86,7 @@ PALPATE_KERNEL Doubles loadWidened(const float* from) noexcept {
 #endif
 }
 
-/// The sums of a, of b, of c and of d.
+/// Four sums: that of the lanes of a, of b, of c and of d.
 PALPATE_KERNEL Doubles sums(Doubles a, Doubles b, Doubles c, Doubles d) noexcept {
 #if defined(PALPATE_TARGET)
   const Doubles ab = Doubles(_mm256_unpacklo_pd(a, b)) + Doubles(_mm256_unpackhi_pd(a, b));
@@ -98,13 +98,13 @@ PALPATE_KERNEL Doubles sums(Doubles a, Doubles b, Doubles c, Doubles d) noexcept
 #endif
 }
 
-/// `yes` where a < b, else `no`: where one of them is not a number, too.
+/// `yes` where a < b, else `no`; a NaN gives `no`.
 PALPATE_KERNEL Floats whereLess(Floats a, Floats b, Floats yes, Floats no) noexcept {
 #if defined(PALPATE_TARGET)
   return a < b ? yes : no;
 #else
-  // In halves, which every processor compares at once; of wholes the compiler would take lane by
-  // lane.
+  // In halves, which every processor compares at once; for whole vectors the compiler would go lane
+  // by lane.
   using Four = float __attribute__((vector_size(16)));
   Four halves[4][2];
   const Floats wholes[4] = {a, b, yes, no};
@@ -118,7 +118,7 @@ PALPATE_KERNEL Floats whereLess(Floats a, Floats b, Floats yes, Floats no) noexc
 #endif
 }
 
-/// Of what is not a number, b.
+/// If one of them is NaN, the result is b.
 PALPATE_KERNEL Floats min(Floats a, Floats b) noexcept {
 #if defined(PALPATE_TARGET)
   return _mm256_min_ps(a, b);
@@ -143,7 +143,7 @@ PALPATE_KERNEL Floats root(Floats a) noexcept {
 #endif
 }
 
-/// A bit for each lane where a <= b.
+/// A bit for each lane: whether a <= b.
 PALPATE_KERNEL std::uint32_t atMost(Floats a, Floats b) noexcept {
 #if defined(PALPATE_TARGET)
   return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kVersion = "1";
 constexpr std::size_t kKeyDigits = 32;
 
-/// In double quotes, as YAML and JSON have them.
+/// In double quotes, with the escapes of YAML and JSON.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {

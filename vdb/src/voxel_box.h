@@ -1,5 +1,5 @@
 #pragma once
-/// Where in space some voxels of an image are.
+/// Finds the region of space that some voxels of an image occupy.
 
 #include <algorithm>
 #include <cmath>
@@ -11,15 +11,15 @@
 
 namespace palpate::vdb {
 
-/// [m] The longest way from a voxel to the next along an axis.
+/// [m] The longest step from a voxel to the next along an axis.
 [[nodiscard]] inline double longestStep(const Image& image) {
   double step = 0.0;
   for (int axis = 0; axis < 3; ++axis) step = std::max(step, glm::length(image.axes[axis]));
   return step;
 }
 
-/// [m] The box around the voxels of an image that hold(value), half a voxel and one more to each
-/// side of their centers.
+/// [m] The box around the voxels of an image for which hold(value) is true, extended by a voxel and
+/// a half on each side of their centers.
 template <typename F>
 Box3 boxWhere(const Image& image, const F& holds) {
   Box3 box;
@@ -34,12 +34,12 @@ Box3 boxWhere(const Image& image, const F& holds) {
   return box.grownBy(1.5 * longestStep(image));
 }
 
-/// [m] Of each value in an image, the box of its voxels' centers, in one walk however many labels
-/// there are.
+/// [m] For each value in an image, the box of its voxels' centers, found in one pass however many
+/// labels there are.
 [[nodiscard]] inline std::map<float, Box3> boxesOfValues(const Image& image) {
   std::map<float, Box3> boxes;
   float last = std::numeric_limits<float>::quiet_NaN();
-  Box3* box = nullptr;  // of `last`
+  Box3* box = nullptr;  // the box of `last`
   for (int k = 0; k < image.size[2]; ++k) {
     pollStop();
     for (int j = 0; j < image.size[1]; ++j) {

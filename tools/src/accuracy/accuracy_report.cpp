@@ -65,7 +65,7 @@ Json rungJson(const Rung& rung) {
 
 Json optionalJson(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
-/// Three digits: the next ones change with the points.
+/// Three digits: further digits would change with the choice of points.
 std::string brief(double value) { return formatNumber(value, 3); }
 
 /// RMS and max as cells; dashes if nothing was compared.

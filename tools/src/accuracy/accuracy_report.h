@@ -1,5 +1,5 @@
 #pragma once
-/// What `palpate accuracy` found, as text, JSON, CSV and plots.
+/// Formats the results of `palpate accuracy` as text, JSON, CSV and plots.
 
 #include <string>
 #include <vector>
@@ -16,7 +16,7 @@ namespace palpate::tools {
 [[nodiscard]] std::string accuracyText(const FieldResult& result, const LengthUnit& unit);
 /// With a heading; SI units.
 [[nodiscard]] std::string accuracyCsv(const std::vector<FieldResult>& results);
-/// Normal and value error against time and against memory; a line for each field and sampler.
+/// Normal error and value error over time and over memory; a line for each field and sampler.
 [[nodiscard]] std::string accuracySvg(const std::vector<FieldResult>& results,
                                       const LengthUnit& unit, const Machine& machine);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// How far a field is off the truth, at points and along strokes.
+/// Measures how far a field is off the truth, at points and along strokes.
 
 #include <optional>
 #include <span>
@@ -15,21 +15,21 @@ struct Errors {
   std::size_t out_of_band = 0;  ///< where the field has no gradient; not compared
   Spread value;                 ///< [m]
   Spread normal;                ///< [degrees] between gradient and true normal
-  Spread curvature;             ///< [1/m] of the mean curvature, from the Hessian
+  Spread curvature;             ///< [1/m] error of the mean curvature, from the Hessian
 };
 
-/// What of a field is taken for the distance.
+/// Which expression of a field counts as its distance.
 enum class ValueIs {
   kDistance,   ///< the value
   kOverSlope,  ///< value / |gradient|
 };
 
-/// Compares those of `points` whose `smooth` is as asked.
+/// Compares those of `points` whose `smooth` equals the argument.
 [[nodiscard]] Errors errorsAt(const Field& field, std::span<const JudgedPoint> points, bool smooth,
                               ValueIs value_is = ValueIs::kDistance);
 
-/// |n[i+1] - 2 n[i] + n[i-1]| of unit normals along strokes: the jump of the force's change from
-/// tick to tick, in N for each N of contact force.
+/// |n[i+1] - 2 n[i] + n[i-1]| of unit normals along strokes: how much the change of force from tick
+/// to tick jumps, in N for each N of contact force.
 struct Jitter {
   std::size_t points = 0;  ///< where all three normals were known, away from edges
   Spread field;            ///< [-]
@@ -38,8 +38,8 @@ struct Jitter {
 
 [[nodiscard]] Jitter jitterOf(const Field& field, std::span<const Stroke> strokes);
 
-/// Slope of log error over log h, by least squares: p, if the error goes with h^p. Nothing for
-/// fewer than two sizes, or if an error is 0.
+/// Slope of log error over log h, by least squares: p, if the error is proportional to h^p. Nothing
+/// for fewer than two sizes, or if an error is 0.
 [[nodiscard]] std::optional<double> fittedOrder(std::span<const double> h,
                                                 std::span<const double> error);
 

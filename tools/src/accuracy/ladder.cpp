@@ -19,7 +19,7 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Where to query for times: along the strokes, rising and falling through half the band.
+/// Where query times are measured: along the strokes, rising and falling within half the band.
 std::vector<Vec3> timedPath(const std::vector<Stroke>& strokes, double band) {
   std::vector<Vec3> path;
   for (const Stroke& stroke : strokes) {
@@ -31,7 +31,7 @@ std::vector<Vec3> timedPath(const std::vector<Stroke>& strokes, double band) {
   return path;
 }
 
-/// The places where the field of a grid is timed and compared.
+/// The places at which the field of a grid is timed and compared.
 struct Places {
   PointSet near;
   std::vector<Stroke> strokes;
@@ -44,7 +44,7 @@ Places choosePlaces(const Truth& truth, double voxel, const LadderSettings& sett
   Places places;
   const double band = settings.band * voxel;
   places.near = pointsNear(truth, band, settings.points, voxel, progress);
-  // Fewer points ask for less work.
+  // If the user asks for fewer points, do less work here too.
   const std::size_t strokes = std::clamp<std::size_t>(settings.points / 1000, 2, kStrokes);
   places.strokes =
       strokesAlong(truth, places.near, strokes, kStrokeLength, kStrokeStep, voxel, progress);
@@ -87,7 +87,8 @@ Rung measureRung(const AskedField& asked, const Places& places, double voxel,
 
   vdb::BakeOptions bake;
   bake.voxel_size = voxel;
-  // What every sampler needs at the outermost points, so that all read the same grid.
+  // The band that the most demanding sampler needs at the outermost points, so that all samplers
+  // read the same grid.
   bake.half_width = vdb::kCubicHalfWidth + std::max(0.0, settings.band - 1.0);
   bake.name = asked.name + "/surface";
   vdb::LevelSet grid;

@@ -1,5 +1,5 @@
 #pragma once
-/// One field against its grids: every sampler at every voxel size.
+/// Compares one field with its grids: every sampler at every voxel size.
 
 #include <optional>
 #include <string>
@@ -23,7 +23,7 @@ struct LadderSettings {
   double clock_ns = 0.0;
 };
 
-/// What one sampler makes of one grid.
+/// The result of one sampler on one grid.
 struct SamplerResult {
   vdb::Sampler sampler = vdb::Sampler::kCubic;
   Errors smooth;      ///< away from edges
@@ -31,19 +31,20 @@ struct SamplerResult {
   Jitter jitter;
   QueryTimes times;
   std::uint64_t memory = 0;   ///< [bytes] that queries read from
-  double make_seconds = 0.0;  ///< [s] the field out of the grid
+  double make_seconds = 0.0;  ///< [s] time to make the field from the grid
 };
 
 /// One voxel size.
 struct Rung {
-  double voxel = 0.0;    ///< [m]
-  std::string why = {};  ///< not empty: the field cannot be baked at this size, and nothing follows
+  double voxel = 0.0;  ///< [m]
+  /// Not empty: the field cannot be baked at this size, and the members below are unset
+  std::string why = {};
   double half_width = 0.0;  ///< [voxels]
   std::uint64_t active_voxels = 0;
   double bake_seconds = 0.0;  ///< [s]
   std::size_t points = 0;
-  std::size_t near_edges = 0;     ///< of the points
-  std::size_t without_truth = 0;  ///< points left out, because the true distance was not found
+  std::size_t near_edges = 0;     ///< number of points near edges
+  std::size_t without_truth = 0;  ///< points left out because the true distance was not found
   std::vector<SamplerResult> samplers = {};
 };
 
@@ -55,9 +56,9 @@ struct Orders {
 
 struct FieldResult {
   AskedField asked;
-  bool projected = false;  ///< truth is the exact distance by projection, not the field's value
-  /// The field itself, at the coarsest voxel size's points; its value over its slope if it is
-  /// implicit.
+  bool projected = false;  ///< the truth is the exact distance by projection, not the field's value
+  /// Errors of the field itself, at the points of the coarsest voxel size; of its value over its
+  /// slope if it is implicit.
   Errors analytic;
   QueryTimes analytic_times;
   std::vector<Rung> rungs = {};

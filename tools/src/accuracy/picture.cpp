@@ -25,7 +25,7 @@ const char* colorOf(vdb::Sampler sampler) {
   return kColors[static_cast<std::size_t>(sampler) % kColors.size()];
 }
 
-/// A field's mark: circle, square, triangle, diamond, and again.
+/// A mark for a field: circle, square, triangle, diamond, and so on in turn.
 std::string mark(double x, double y, std::size_t field, const char* color) {
   const std::string fill = std::string("' fill='") + color + "'/>\n";
   const auto corners = [&](const std::vector<std::pair<double, double>>& offsets) {
@@ -49,7 +49,7 @@ std::string mark(double x, double y, std::size_t field, const char* color) {
   }
 }
 
-/// The line of one field and sampler, coarse to fine.
+/// The curve of one field and sampler, from coarse to fine.
 std::string curve(const FieldResult& result, std::size_t field, vdb::Sampler sampler,
                   const Scale& x_scale, const Scale& y_scale, const Axis& x, const Axis& y,
                   const LengthUnit& unit) {

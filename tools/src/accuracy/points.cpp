@@ -12,7 +12,7 @@ constexpr std::uint64_t kSeed = 20260101;
 constexpr double kFinestCells = 256.0;  ///< along the longest side
 constexpr std::size_t kReportEvery = 4096;
 
-/// Reproducible everywhere, which std's distributions are not.
+/// Gives the same numbers everywhere, which std's distributions do not.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -30,7 +30,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Cubes of one size that together hold all points within `band` of the surface.
+/// Equal cubes that together contain all points within `band` of the surface.
 struct Cells {
   std::vector<Vec3> lower;  ///< [m] corners
   double side = 0.0;        ///< [m]
@@ -55,7 +55,7 @@ Cells cellsNear(const Field& field, double band, const Progress& progress) {
         const Vec3 center = lower + Vec3(0.5 * cells.side);
         const bool known =
             domain.contains(center - Vec3(reach)) && domain.contains(center + Vec3(reach));
-        // |S| <= L times the distance to the surface.
+        // |S| is at most L times the distance to the surface.
         if (!known || std::fabs(field.value(center)) <= field.lipschitz() * reach) {
           kept.push_back(lower);
         }
@@ -71,7 +71,7 @@ Error noSurface() {
                     "is the shape empty, or smaller than the voxels?");
 }
 
-/// A unit vector across `normal`, turned by `angle` about it.
+/// A unit vector perpendicular to `normal`, turned by `angle` about it.
 Vec3 tangentAt(const Vec3& normal, double angle) {
   const Vec3 least = std::fabs(normal.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
   const Vec3 first = glm::normalize(glm::cross(normal, least));

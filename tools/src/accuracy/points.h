@@ -1,5 +1,6 @@
 #pragma once
-/// Where a grid is compared with the truth: random points near the surface, and strokes along it.
+/// The places where a grid is compared with the truth: random points near the surface, and strokes
+/// along it.
 
 #include <cstdint>
 #include <vector>
@@ -17,17 +18,18 @@ struct JudgedPoint {
 
 struct PointSet {
   std::vector<JudgedPoint> points;
-  std::size_t without_truth = 0;  ///< were near enough, but have no known truth; not among `points`
+  /// Points that were near enough, but have no known truth; not among `points`
+  std::size_t without_truth = 0;
 };
 
 /// `count` points, evenly distributed over the space whose true distance to the surface is at most
-/// `band` [m]; the same for the same arguments, on every machine with the same rounding. `voxel`
-/// [m] is for JudgedPoint::smooth. The field must be bounded.
+/// `band` [m]. The same arguments give the same points, on every machine with the same rounding.
+/// `voxel` [m] is used for JudgedPoint::smooth. The field must be bounded.
 /// @throws Error: kInput if it has no surface, kCancelled.
 [[nodiscard]] PointSet pointsNear(const Truth& truth, double band, std::size_t count, double voxel,
                                   const Progress& progress = {});
 
-/// Points on the surface, `step` [m] apart along a line as straight as the surface lets it be.
+/// Points on the surface, `step` [m] apart along a line that is as straight as the surface allows.
 struct Stroke {
   std::vector<JudgedPoint> points;
 };

@@ -14,7 +14,7 @@ double nanoseconds(Clock::duration time) {
   return std::chrono::duration<double, std::nano>(time).count();
 }
 
-/// Keeps the compiler from leaving out what `value` was computed for.
+/// Uses `value`, so that the compiler does not optimize its computation away.
 void use(double value) noexcept {
   volatile double sink = value;
   (void)sink;
@@ -34,7 +34,7 @@ double runIndependent(const Field& field, std::span<const Vec3> path) {
 }
 
 double runDependent(const Field& field, std::span<const Vec3> path) {
-  // So small that no position changes, but no compiler or processor can know.
+  // So small that no position changes, but neither compiler nor processor can know that.
   constexpr double kNothing = 1e-40;
   double last = 0.0;
   const auto before = Clock::now();

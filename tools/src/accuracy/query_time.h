@@ -1,5 +1,5 @@
 #pragma once
-/// How long a query for value and gradient takes.
+/// Measures how long a query for value and gradient takes.
 
 #include <span>
 
@@ -11,11 +11,11 @@ namespace palpate::tools {
 struct QueryTimes {
   double independent = 0.0;  ///< [ns] one after another along a path
   double dependent = 0.0;    ///< [ns] each position waits for the last result, as in a servo loop
-  double cold = 0.0;         ///< [ns] alone, after other data went through the caches; median
+  double cold = 0.0;  ///< [ns] one query alone, after other data went through the caches; median
 };
 
-/// Along `path` [m], the shortest of `repeats` runs; cold at `cold_queries` places spread over
-/// `scattered`. `clock_ns` is taken off each cold query.
+/// Times queries along `path` [m]: the shortest of `repeats` runs; cold ones at `cold_queries`
+/// places spread over `scattered`. `clock_ns` is subtracted from each cold query.
 [[nodiscard]] QueryTimes timeQueries(const Field& field, std::span<const Vec3> path,
                                      std::span<const Vec3> scattered, int repeats,
                                      std::size_t cold_queries, double clock_ns, CacheFlood& flood);

@@ -14,7 +14,7 @@ double angleBetween(const Vec3& a, const Vec3& b) noexcept {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-/// Halves the way, always keeping the half that turns more.
+/// Bisects the segment, always keeping the half in which the gradient turns more.
 bool bendsBetween(const Field& field, Vec3 a, Vec3 at_a, Vec3 b, double voxel) noexcept {
   Vec3 at_b = field.sample(b).gradient;
   double turn = angleBetween(at_a, at_b);

@@ -22,8 +22,8 @@ constexpr double kDepth = 1e-3;  // [m]
 const Vec3 kOrigin(0.0);
 const Vec3 kUp(0.0, 0.0, 1.0);
 
-/// Ten rounds `depth` below (in a hollow: behind) the surface of a ball about the origin, the angle
-/// of the great circle growing by `speed` / distance from the center.
+/// Ten rounds at the depth `depth` below the surface of a ball about the origin (in a hollow:
+/// behind it). The angle along the great circle grows by `speed` / distance from the center.
 ContactCase ball(FieldPtr field, double radius, double depth, double speed, Held held,
                  double rounds = 10.0) {
   const bool hollow = held == Held::kInside;
@@ -99,7 +99,7 @@ Judge boxJudge(Held held) {
       [=](const Vec3& p) { return oracle::boxMinima(p, -kHalfBox, kHalfBox, held); });
 }
 
-/// Along the top face and off over its edge, into the side face and up over the edge again.
+/// Along the top face and over its edge, into the side face, and back up over the edge.
 ContactCase boxEdge() {
   PathMaker maker(Vec3(0.0, 0.0, 0.012));
   maker.go(Vec3(0.01, 0.0, 0.009), kApproachSpeed);
@@ -121,7 +121,7 @@ ContactCase boxEdge() {
   return out;
 }
 
-/// Held in a box: over its walls, edges and corners.
+/// A hand inside a box: along its walls, edges and corners.
 ContactCase room() {
   const auto curve = [](double s) {
     return 1.3 * kHalfBox * Vec3(std::sin(s), std::sin(1.31 * s + 0.4), std::sin(1.73 * s + 0.9));
@@ -130,7 +130,7 @@ ContactCase room() {
                10.0 * kTurn, kStroke, boxJudge(Held::kInside));
 }
 
-/// Round the crease between two balls, to and fro across it.
+/// Around the crease between two balls, to and fro across it.
 ContactCase crease() {
   const oracle::Ball a{Vec3(-0.02, 0.0, 0.0), 0.03};
   const oracle::Ball b{Vec3(0.02, 0.0, 0.0), 0.03};
@@ -158,7 +158,7 @@ ContactCase groove() {
       judgeByFormula([=](const Vec3& p) { return oracle::grooveMinima(p, kOrigin, n1, n2); }));
 }
 
-/// Round the waist of two metaballs, where the surface bends both ways.
+/// Around the waist of two metaballs, where the surface is a saddle.
 ContactCase saddle() {
   const FieldPtr field =
       metaballs({{Vec3(-0.015, 0.0, 0.0), 0.03, 1.0}, {Vec3(0.015, 0.0, 0.0), 0.03, 1.0}},
@@ -179,7 +179,7 @@ ContactCase saddle() {
                judgeByOracle(oracle::FeasibleSet::outside(field), 16));
 }
 
-/// Adds balls with an opening each, in rows well away from the container, until the scene has
+/// Adds balls with one opening each, in rows well away from the container, until the scene has
 /// `count` ports.
 void addPortsElsewhere(SceneDescription& scene, std::size_t count) {
   const auto source = [](FieldPtr field) {
@@ -202,8 +202,8 @@ void addPortsElsewhere(SceneDescription& scene, std::size_t count) {
   }
 }
 
-/// Into the paper's container by its mouth, round its wall from within, out again, and round it
-/// from outside; in a scene of so many ports.
+/// Into the paper's container through its mouth, around its wall from within, out again, and around
+/// it from outside; in a scene of `ports` ports.
 ContactCase container(std::size_t ports) {
   const double radius = 0.04;
   PathMaker maker(Vec3(0.0, 0.0, 0.03));
@@ -250,7 +250,7 @@ ContactCase container(std::size_t ports) {
   return out;
 }
 
-/// `count` balls of 5 mm, 12 mm apart; the one that is touched is in their midst.
+/// `count` balls of 5 mm, 12 mm apart; the middle one is touched.
 ContactCase manyBalls(std::size_t count) {
   const double radius = 5e-3;
   const double apart = 12e-3;

@@ -22,12 +22,12 @@ Json timesJson(const std::optional<OnceTimes>& times) {
 
 Json numberJson(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 
-/// A cell of a table: what is not there is `otherwise`, and nothing else is.
+/// A cell of a table: the value, or `otherwise` if there is none.
 std::string cell(const std::optional<double>& value, int digits, const char* otherwise) {
   return value ? formatNumber(*value, digits) : otherwise;
 }
 
-/// What a row has where it has it, in one order for the table and the file.
+/// The optional values of a row, in the same order for the table and the file.
 struct Cells {
   explicit Cells(const Measurement& m) {
     if (m.paced) paced_median = m.paced->median, paced_p999 = m.paced->p999;

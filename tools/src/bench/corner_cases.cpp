@@ -14,9 +14,10 @@ using oracle::Minima;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kStroke = 0.2;      // [m/s]
-constexpr std::size_t kStride = 16;  // ticks from one that the oracle judges to the next
+constexpr std::size_t kStride = 16;  // ticks between two that the oracle judges
 
-/// To all sides of `about`, never the same way twice, up to `reach` [m] off along each axis.
+/// A curve that moves to all sides of `about`, never the same way twice, at most `reach` [m] off
+/// along each axis.
 Curve wander(const Vec3& about, double reach) {
   return [=](double s) {
     return about + reach * Vec3(std::sin(s), std::sin(1.31 * s + 0.4), std::sin(1.73 * s + 0.9));
@@ -30,8 +31,8 @@ struct Ball {
 const std::array<Ball, 3> kBalls = {
     {{Vec3(0.0), 0.020}, {Vec3(0.020, 0.0, 0.0), 0.015}, {Vec3(0.010, 0.018, 0.0), 0.012}}};
 
-/// The point above the xy plane that the three have in common: their spheres' differences are
-/// planes.
+/// The common point of the three spheres above the xy plane: differences of the sphere equations
+/// are planes.
 Vec3 ballsCorner() {
   const auto power = [](const Ball& ball) {
     return glm::dot(ball.center, ball.center) - ball.radius * ball.radius;
@@ -58,8 +59,8 @@ ContactCase threeBalls(bool hollow) {
   for (const Ball& ball : kBalls) balls.push_back(sphere(ball.center, ball.radius));
   const FieldPtr solid = hollow ? intersect(balls) : subtract(balls);
   const Vec3 corner = ballsCorner();
-  // From a place that is free: straight above the two balls that are cut out, or in the middle of
-  // all.
+  // The path starts in free space: straight above the two balls that are cut out, or in the middle
+  // of all three.
   const Vec3 free = hollow ? Vec3(0.010, 0.008, 0.0) : Vec3(-0.010, -0.005, 0.005);
   return along(solidScene(solid, StartIn::kSolid), free, wander(corner, 0.004), 0.0, 20.0 * kTurn,
                kStroke, judgeByOracle(oracle::FeasibleSet::inside(solid), kStride));
@@ -85,7 +86,7 @@ ContactCase nestedCsg() {
   const FieldPtr columns = unite({capsule(mm(-14, -6, -40), mm(-14, -6, 40), 0.004), bar});
   const FieldPtr stone = subtract({sphere(mm(12, -10, -6), 0.009), sphere(mm(12, -14, 0), 0.006)});
   const FieldPtr spike = cone(mm(0, -4, -22), up, 0.008, 0.026);
-  // Few parts with faces: the oracle tries every three of them in every branch of the tree.
+  // Only a few parts have faces: the oracle tries every three of them in every branch of the tree.
   const FieldPtr tree = subtract({dome, unite({columns, stone}), spike});
   const auto curve = [](double s) {
     return 1e-3 * Vec3(30.0 * std::sin(s), 25.0 * std::sin(1.31 * s + 0.4),

@@ -22,7 +22,7 @@ double run(const std::vector<Vec3>& path) {
   double sum = 0.0;
   double time = 0.0;
   for (const Vec3& hand : path) {
-    // As a clock gives it: no tick is as long as the one before, to the last bit.
+    // Times as a clock gives them: in the last bits, no tick is as long as the one before.
     const double dt = (time + kTick) - time;
     time += kTick;
     const devices::ToolMotion tool = coupling.reach(hand, dt);

@@ -19,7 +19,7 @@ struct Shell {
   double radius;     ///< [m]
   double stiffness;  ///< [N/m] in the mean
   double viscosity;  ///< [N s/m] in the mean
-  double opens_at;   ///< [N] in the mean; 0: it does not
+  double opens_at;   ///< [N] mean of opens_at; 0: the wall does not open
 };
 constexpr std::array<Shell, 5> kShells = {{{"skin", 0.050, 700.0, 2.0, 1.2},
                                            {"fat", 0.048, 300.0, 1.0, 0.3},
@@ -27,8 +27,8 @@ constexpr std::array<Shell, 5> kShells = {{{"skin", 0.050, 700.0, 2.0, 1.2},
                                            {"bone", 0.038, 2000.0, 0.5, 0.0},
                                            {"marrow", 0.033, 400.0, 4.0, 0.0}}};
 
-/// `mean` and up to a fifth more or less, in waves of some centimeters, as a scan of 2 mm has it;
-/// 16 bits.
+/// A map with values around `mean`, up to a fifth more or less, in waves of some centimeters, like
+/// a scan of 2 mm; 16 bits.
 MaterialMapPtr waves(double mean, double phase) {
   vdb::Image image;
   image.size = {61, 61, 61};
@@ -83,7 +83,7 @@ ScenePtr fiveLayerScene() {
   return compile(scene);
 }
 
-/// Where stiffness differs from place to place no formula has the force.
+/// No judgment: where stiffness differs from place to place, no formula gives the force.
 Judge timesOnly() {
   return [](std::span<const Vec3> path, std::span<const TickResult>, const Progress&) {
     return Truth(path.size());

@@ -15,7 +15,7 @@ std::string stiffness(double value) {
   return formatNumber(value, 3);
 }
 
-/// Place of `name` in `names`, from 1; it is added if it is new.
+/// Number of `name` in `names`, from 1; a new name is added.
 int numberOf(std::vector<std::string>& names, const std::string& name) {
   const auto at = std::find(names.begin(), names.end(), name);
   if (at != names.end()) return static_cast<int>(at - names.begin()) + 1;
@@ -23,7 +23,7 @@ int numberOf(std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(names.size());
 }
 
-/// [N/m] The axis begins in its decade.
+/// [N/m] The value in whose decade the axis begins.
 double leastOf(const std::vector<PlotPoint>& points) {
   double least = points.empty() ? 1.0 : points.front().y;
   for (const PlotPoint& point : points) least = std::min(least, point.y);

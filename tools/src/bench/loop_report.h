@@ -1,5 +1,5 @@
 #pragma once
-/// What `palpate bench stability` found: for people, for programs, and as maps.
+/// Formats the results of `palpate bench stability` for people, for programs, and as maps.
 
 #include <string>
 #include <vector>
@@ -16,17 +16,17 @@ using loops::LoopLimit;
 [[nodiscard]] std::string limitsTable(const std::vector<LoopLimit>& rows);
 [[nodiscard]] std::string limitsCsv(const std::vector<LoopLimit>& rows);
 
-/// Largest stiffness over rate, by device, of `rows` of one scene and renderer: found, and the
-/// budget.
+/// A map of the largest stiffness over the rate, by device, from `rows` of one scene and renderer:
+/// as found, and the budget.
 [[nodiscard]] std::string rateMap(const std::vector<LoopLimit>& rows, const Machine& machine);
 
-/// A point of the map below.
+/// A point of the map that curvatureMap() draws.
 struct CurvedLimit {
   LoopLimit limit;
   double curvature_depth = 0.0;  ///< [-] at the stiffness that was found
   bool is_hollow = false;
 };
-/// Largest stiffness over curvature times depth, by renderer.
+/// A map of the largest stiffness over curvature times depth, by renderer.
 [[nodiscard]] std::string curvatureMap(const std::vector<CurvedLimit>& rows,
                                        const Machine& machine);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What figures of time were measured on and with.
+/// The machine and the build on which times were measured.
 
 #include <string>
 
@@ -7,11 +7,11 @@ namespace palpate::tools {
 
 struct Machine {
   std::string cpu;       ///< model name
-  unsigned threads = 0;  ///< that the machine can run at once
+  unsigned threads = 0;  ///< threads that the machine can run at once
   std::string system;    ///< kernel and architecture
   std::string compiler;
   std::string build_type;
-  bool optimized = false;  ///< false: times say nothing
+  bool optimized = false;  ///< false: times mean nothing
   double clock_ns = 0.0;   ///< [ns] that reading the clock adds to a tick's time
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The machine as reports name it.
+/// The machine in the form that reports use.
 
 #include "bench/machine.h"
 #include "palpate/version.h"

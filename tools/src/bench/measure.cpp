@@ -11,7 +11,7 @@
 namespace palpate::tools {
 namespace {
 
-/// Forces of less than this depth [m] are not forces: nothing can be said of their direction.
+/// [m] A force from a smaller depth does not count, because its direction is uncertain.
 constexpr double kLeastDepth = 1e-6;
 constexpr double kDegrees = 57.29577951308232;
 

@@ -1,6 +1,6 @@
 #pragma once
-/// One renderer on one case: how long a tick takes, how far off its force is, and how often it does
-/// not come to rest.
+/// Measures one renderer on one case: how long a tick takes, how far its force is off, and how
+/// often it does not settle.
 
 #include <optional>
 #include <string>
@@ -13,49 +13,50 @@
 namespace palpate::tools {
 
 struct MeasureSettings {
-  int repeats = 10;        ///< hot runs of the whole path
-  int paced_ticks = 2000;  ///< timed at the pace of the path, the loop waiting in between; 0: none
-  int cold_ticks = 30;     ///< timed after other data went through the caches; 0: none
+  int repeats = 10;  ///< hot runs of the whole path
+  /// Ticks timed at the pace of the path, with the loop waiting in between; 0: none
+  int paced_ticks = 2000;
+  int cold_ticks = 30;  ///< ticks timed after other data went through the caches; 0: none
 };
 
-/// [ns] over the ticks, with the clock's own time.
+/// [ns] Statistics over the ticks, including the clock's own time.
 struct HotTimes {
   double median = 0.0, p99 = 0.0, p999 = 0.0, most = 0.0;
 };
 
-/// [ns] of single ticks, each timed once.
+/// [ns] Statistics of single ticks, each timed once.
 struct OnceTimes {
   std::size_t ticks = 0;
   double median = 0.0, p999 = 0.0;
 };
 
-/// Against the truth, where there is one.
+/// Comparison with the truth, where it is known.
 struct Judgement {
-  std::size_t ticks = 0;   ///< compared with the truth
-  std::size_t missed = 0;  ///< of these, where one of the two has a force and the other none
-  std::optional<Spread>
-      direction;  ///< [degrees] between force and true force, where both are there
+  std::size_t ticks = 0;            ///< compared with the truth
+  std::size_t missed = 0;           ///< of these, ticks in which only one of the two has a force
+  std::optional<Spread> direction;  ///< [degrees] between force and true force, where both exist
   std::optional<Spread> magnitude;  ///< [-] of the force, as a share of the true one
   std::optional<Spread> error;      ///< [-] |force - true force| / |true force|
 };
 
 struct Measurement {
-  std::size_t ticks = 0;  ///< timed hot
-  /// One after another; of each tick the shortest of all runs, so that what else the machine did is
-  /// left out.
+  std::size_t ticks = 0;  ///< number of ticks timed hot
+  /// One run after another; for each tick the shortest time of all runs, so that disturbances by
+  /// other work are left out.
   HotTimes hot;
   std::optional<OnceTimes> paced = {};
   std::optional<OnceTimes> cold = {};
-  std::optional<Judgement> judgement = {};       ///< not given: nothing judges this case
-  std::optional<UnsettledMeter> unsettled = {};  ///< the paper's renderer does not say
+  std::optional<Judgement> judgement = {};  ///< not given: no judge for this case
+  /// Not given: the paper's renderer does not report it
+  std::optional<UnsettledMeter> unsettled = {};
   double step = 0.0;  ///< [N] largest change of the force from tick to tick
   double turn = 0.0;  ///< [degrees] largest turn of the force from tick to tick
-  /// Of the true force, where every tick has one.
+  /// Of the true force, if every tick has one.
   std::optional<double> true_step = {}, true_turn = {};
 };
 
-/// `flood` is asked for if there are cold ticks. Nothing if the renderer cannot do the case, and
-/// then `why`.
+/// Calls `flood` before cold ticks, if there are any. Nothing if the renderer cannot run the case;
+/// then `why` says the reason.
 [[nodiscard]] std::optional<Measurement> measure(const ContactCase& what, RendererKind kind,
                                                  const MeasureSettings& settings, CacheFlood* flood,
                                                  const Progress& progress, std::string& why);

@@ -18,9 +18,9 @@ void PathMaker::follow(const Curve& curve, double from, double to, double speed)
   go(curve(from), speed);
   const double step = speed * kTickSeconds;
   double s = from;
-  double stride = 1e-3;  // of the parameter; the first guess, corrected at once
+  double stride = 1e-3;  // of the parameter; a first guess, corrected at once
   while (s < to) {
-    // The stride that goes `step` far, by a few secant steps from the last one.
+    // Find the stride that moves by `step`: a few secant steps from the last one.
     for (int i = 0; i < 8; ++i) {
       const double gone = glm::length(curve(s + stride) - at());
       if (std::fabs(gone - step) < 1e-3 * step) break;

@@ -10,12 +10,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A servo loop wakes this much early and looks at the clock until the tick is due.
+/// A servo loop wakes this much early and then watches the clock until the tick is due.
 constexpr std::chrono::microseconds kSpin(80);
 constexpr std::size_t kStretches = 10;
 
-/// Plays the path from its first point; `before` is called with each tick's index ahead of the
-/// timed update.
+/// Plays the path from its first point; calls `before` with each tick's index before the timed
+/// update.
 template <typename Before, typename After>
 void play(const ContactCase& what, HapticRenderer& renderer, const Before& before,
           const After& after) {
@@ -72,7 +72,7 @@ std::vector<std::int64_t> runPaced(const ContactCase& what, HapticRenderer& rend
       what, renderer,
       [&](std::size_t i) {
         if (!isPaced(i)) return;
-        // As a device keeps time: a tick that begins late does not shift those after it.
+        // As for a device: a tick that begins late does not delay the schedule of later ones.
         const bool is_first = (i - what.first) % stretch == 0;
         due = is_first ? Clock::now() + kTick : std::max(due + kTick, Clock::now());
         if ((i - what.first) % 64 == 0) report(progress, "at the pace of a device", -1.0);

@@ -14,7 +14,7 @@
 namespace palpate::tools {
 namespace {
 
-/// Reads at once and takes every force.
+/// A device that answers reads at once and accepts every force.
 class NullDevice final : public devices::Device {
  public:
   void open() override {}

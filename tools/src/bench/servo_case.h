@@ -1,5 +1,5 @@
 #pragma once
-/// How late this machine wakes a servo loop.
+/// Measures how late this machine wakes a servo loop.
 
 #include <string>
 #include <vector>
@@ -12,12 +12,12 @@ namespace palpate::tools {
 
 struct ServoFigures {
   double rate = 0.0;  ///< [Hz]
-  int load = 0;       ///< threads that did nothing but compute meanwhile
+  int load = 0;       ///< number of threads that only computed meanwhile
   devices::ServoReport report;
   double seconds = 0.0;
 
-  /// No turn in ten thousand was missed, and one in a thousand came later than half a period at
-  /// most.
+  /// True if at most one turn in ten thousand was missed, and at most one in a thousand came later
+  /// than half a period.
   [[nodiscard]] bool isGood() const;
 };
 

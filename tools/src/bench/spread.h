@@ -1,5 +1,5 @@
 #pragma once
-/// Errors, summed up.
+/// Summary statistics of errors.
 
 #include <algorithm>
 #include <cmath>

@@ -22,7 +22,7 @@ namespace {
 using namespace loops;
 
 const std::vector<std::string> kDevices = {"excalibur", "falcon", "touch", "omega_3"};
-// The quick setting: what differs most.
+// The choice for quick runs: devices that differ most.
 const std::vector<std::string> kFewDevices = {"falcon", "touch"};
 const std::vector<std::string> kFewScenes = {"flat",      "ball-20",   "hollow-5",    "edge-within",
                                              "groove-10", "two-balls", "friction-0.8"};
@@ -33,7 +33,7 @@ Error unknown(const char* what, const std::string& name, const std::vector<std::
                 suggestionFor(name, known, "it has " + joined(known))});
 }
 
-/// What was asked for, or `all`.
+/// The requested ones, or `all` if none was requested.
 std::vector<std::string> chosen(const char* what, const std::vector<std::string>& asked,
                                 const std::vector<std::string>& all) {
   for (const std::string& name : asked) {
@@ -54,7 +54,8 @@ const HardScene& sceneNamed(const std::string& name) {
                        [&](const HardScene& scene) { return scene.name == name; });
 }
 
-/// Rows of one scene share its compiled scene, and rows of one renderer that renderer.
+/// Runs the rows. Rows of one scene share its compiled scene, and rows of one renderer share the
+/// renderer.
 class Runner {
  public:
   explicit Runner(Progress progress) : progress_(std::move(progress)) {}
@@ -100,7 +101,7 @@ std::vector<CurvedLimit> overCurvature(Runner& runner) {
         const LoopCase what{scene.name, renderer, "falcon"};
         const auto row = runner.run(what, scene, -1.0);
         if (!row) continue;
-        const double depth = row->found > 0.0 ? 1.0 / row->found : 0.0;  // [m] of 1 N
+        const double depth = row->found > 0.0 ? 1.0 / row->found : 0.0;  // [m] depth at 1 N
         rows.push_back({*row, depth / radius, is_hollow});
       }
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// `palpate bench stability`.
+/// The verb `palpate bench stability`.
 
 #include "console.h"
 #include "options.h"
@@ -7,7 +7,7 @@
 
 namespace palpate::tools {
 
-/// @throws Error (kUsage) for a name that there is not.
+/// @throws Error (kUsage) for an unknown name.
 [[nodiscard]] Report runStabilityBench(const BenchOptions& options, const GeneralOptions& general,
                                        Console& console);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What `palpate check` finds in one file.
+/// The findings of `palpate check` in one file.
 
 #include <cstdint>
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace palpate::tools {
 
-/// Something that is not as it should be.
+/// Something that is wrong or worth knowing.
 struct Finding {
   std::string code;     ///< "mesh.holes", "grid.band_holes", ...
   std::string message;  ///< for people, with the place
@@ -25,23 +25,23 @@ struct Finding {
 
 struct FileCheck {
   bool is_yes = true;  ///< it can be touched
-  Json json;           ///< with "file", "kind" and "ok" first
+  Json json;           ///< begins with "file", "kind" and "ok"
   std::string text;
 };
 
 [[nodiscard]] FileCheck checkMeshFile(const std::string& file, const CheckOptions& options,
                                       Console& console);
-/// One grid of the level-set class that cannot be touched is a no, and so is a file without any
-/// that can.
+/// The answer is "no" if a grid of the level-set class cannot be touched, or if the file has no
+/// grid that can.
 [[nodiscard]] FileCheck checkGridFile(const std::string& file, const CheckOptions& options,
                                       Console& console);
 
-/// Makes all of it; what its grids could not hold of meshes and scans is a note, and does not make
-/// the answer no. @throws Error, if it cannot be made.
+/// Makes everything in the scene. Parts of meshes and scans that its grids could not hold are
+/// notes, and do not make the answer no. @throws Error, if the scene cannot be made.
 [[nodiscard]] FileCheck checkSceneFile(const std::string& file, Console& console);
 
 [[nodiscard]] Json findingsJson(const std::vector<Finding>& findings);
-/// A line for each.
+/// One line for each finding.
 [[nodiscard]] std::string findingsText(const std::vector<Finding>& findings, const char* indent);
 [[nodiscard]] Json problemJson(const Problem& problem);
 /// "the mesh is open: ... (close it ...)"

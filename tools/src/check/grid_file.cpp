@@ -10,13 +10,13 @@
 namespace palpate::tools {
 namespace {
 
-/// Where the mean of |gradient| is farther from 1, values are not distances in the grid's own unit:
-/// forces and contact would be off by as much. As certified() has it.
+/// If the mean of |gradient| differs from 1 by more than this, values are not distances in the
+/// grid's own unit: forces and contact would be wrong by as much. The same limit as in certified().
 constexpr double kMostSlope = 0.25;
 
 struct GridVerdict {
   bool is_yes = true;
-  bool is_surface = true;  ///< it is, or might be, one that can be touched
+  bool is_surface = true;  ///< it is, or might be, a surface that can be touched
   std::vector<Finding> findings;
 };
 
@@ -162,7 +162,7 @@ FileCheck checkGridFile(const std::string& file, const CheckOptions& options, Co
   for (const vdb::GridCheck& check : checks) {
     const std::string& own = check.grid.info.length_unit;
     const std::string& name = own.empty() ? options.units : own;
-    // Without a unit, places are given in the grid's own numbers, which are then those in m.
+    // Without a unit, places are given in the grid's own numbers, which are read as m.
     const LengthUnit unit = metersPer(name) ? lengthUnit(name) : LengthUnit{"units", 1.0};
     const GridVerdict verdict = judge(check, unit);
     any_yes = any_yes || verdict.is_yes;

@@ -12,7 +12,7 @@
 namespace palpate::tools {
 namespace {
 
-/// [m] What a hand can feel is not smaller, nor larger; a whole body is 2 m long.
+/// [m] Sizes between which a hand can feel a shape; a whole body is 2 m long.
 constexpr double kSmall = 1e-3;
 constexpr double kLarge = 3.0;
 
@@ -93,7 +93,7 @@ void findTriangles(Checked& c) {
   }
 }
 
-/// What came of the bake that was tried.
+/// The result of the trial bake.
 struct Trial {
   double voxel = 0.0;   ///< [m]
   double volume = 0.0;  ///< [m^3]

@@ -7,7 +7,8 @@
 namespace palpate::tools {
 namespace {
 
-/// Nothing of a scan that a grid could not hold keeps the scene from being touched.
+/// Adds notes on parts of a scan that a grid could not hold; they do not keep the scene from being
+/// touched.
 void findLoss(const vdb::GridRecord& grid, std::vector<Finding>& findings) {
   const vdb::ScanLoss loss = vdb::scanLoss(grid.info);
   if (loss.lost + loss.filled > 0) {

@@ -10,7 +10,7 @@ std::vector<std::string> namesOf(const std::vector<VerbWords>& verbs) {
   return names;
 }
 
-/// Behind `help` stand a verb or `scene`.
+/// The words that may follow `help`: verbs and `scene`.
 std::string helpTopics(const std::vector<VerbWords>& verbs) {
   return joined(namesOf(verbs), " ") + " scene";
 }

@@ -1,4 +1,4 @@
-// The verbs about devices and the machine that runs them.
+// The verbs for devices and for the machine that runs them.
 
 #include "command_line/verb.h"
 #include "real_device.h"

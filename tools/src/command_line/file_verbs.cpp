@@ -1,4 +1,4 @@
-// The verbs that make and describe files, measure, and help.
+// The verbs that make and describe files, measure, and show help.
 
 #include "command_line/verb.h"
 
@@ -23,7 +23,7 @@ void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes) {
 
 namespace {
 
-/// How a surface is made into a grid, and which.
+/// Options about how a surface becomes a grid, and which grid.
 void addBaking(CLI::App& app, BakeOptions& o) {
   const char* g = "The grid";
   add(app, g, "--voxel", "LENGTH", o.voxel,

@@ -11,7 +11,7 @@
 namespace palpate::tools {
 namespace {
 
-/// Our layout of --help: wide first column, no type decorations that the text does not explain.
+/// Layout of --help: a wide first column, no type decorations that the text does not explain.
 class HelpFormatter : public CLI::Formatter {
  public:
   HelpFormatter() { column_width(30); }
@@ -27,7 +27,7 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_positionals(const CLI::App*) const override { return {}; }
 };
 
-/// Of verbs that make a scene, and take grids that were kept.
+/// True for verbs that make the grids of a scene, or take kept ones.
 bool makesGrids(std::string_view verb) {
   constexpr std::string_view kVerbs[] = {"touch",   "view",    "replay", "bake",
                                          "pack",    "convert", "check",  "query",
@@ -48,7 +48,7 @@ std::string markdown() {
 std::unique_ptr<CLI::App> makeApp(const Verb& verb, Invocation& invocation) {
   auto app = std::make_unique<CLI::App>(verb.line, verb.usage);
   app->formatter(std::make_shared<HelpFormatter>());
-  app->set_help_flag();  // ours is handled before parsing, so that it never competes with errors
+  app->set_help_flag();  // --help is handled before parsing, so that it never competes with errors
   verb.define(*app, invocation);
   const char* g = "General";
   if (verb.name != std::string_view("help")) {

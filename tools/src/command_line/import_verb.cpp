@@ -1,4 +1,4 @@
-// The verb that makes a scene of a segmented scan.
+// The verb that makes a scene from a segmented scan.
 
 #include "command_line/verb.h"
 

@@ -4,8 +4,7 @@
 namespace palpate::tools {
 namespace {
 
-/// Text that roff takes as it is: no line begins with a control character, no hyphen turns into a
-/// dash.
+/// Escapes text for roff: no line begins with a control character, no hyphen turns into a dash.
 std::string plain(std::string_view text) {
   std::string out;
   bool begins = true;

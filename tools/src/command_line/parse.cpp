@@ -17,7 +17,7 @@ bool looksLikePoint(const std::string& text) {
   return std::count(text.begin(), text.end(), ',') == 2 && isOfNumbers(text);
 }
 
-/// For an option that nobody knows: what may have been meant.
+/// The error for an unknown option, with a suggestion.
 Error unknownArgument(const CLI::App& app, const Verb& verb, const std::string& argument) {
   const std::string more = "see palpate " + std::string(verb.name) + " --help";
   if (argument.find(',') != std::string::npos && isOfNumbers(argument)) {
@@ -38,7 +38,7 @@ Error unknownArgument(const CLI::App& app, const Verb& verb, const std::string& 
 }
 
 /// `--insert A B C` becomes `--insert A --insert B --insert C`, so that a list of points never
-/// swallows what follows it; and "-.5,..." is told apart from a short option.
+/// swallows the arguments behind it; and "-.5,..." is told apart from a short option.
 std::vector<std::string> spreadPoints(const Verb& verb, const std::vector<std::string>& arguments) {
   std::vector<std::string> out;
   std::string list;

@@ -1,4 +1,4 @@
-// The verbs that look at a scene or feel it.
+// The verbs that show a scene or let it be felt.
 
 #include "command_line/verb.h"
 #include "palpate/core/text.h"
@@ -24,7 +24,7 @@ std::string named(const std::string& text) { return text.empty() ? "a name is mi
 
 namespace {
 
-/// "" for the number of a tick.
+/// Checks the number of a tick: returns "" if it is valid, else an error.
 std::string tickNumber(const std::string& text) {
   constexpr std::size_t kMostDigits = 15;
   const bool is_number = !text.empty() && text.size() <= kMostDigits &&

@@ -1,5 +1,5 @@
 #pragma once
-/// What a verb of the command line is, and the parts that its definition is put together from.
+/// The definition of a verb of the command line, and the parts that definitions are built from.
 
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -17,21 +17,21 @@ namespace palpate::tools {
 
 struct Verb {
   const char* name;
-  const char* line;     ///< what it does, in one line
-  const char* example;  ///< one that runs from the project's folder
+  const char* line;     ///< its purpose, in one line
+  const char* example;  ///< a command that runs from the project's folder
   const char* usage;
-  const char* details;                ///< after the options; may be empty
-  std::set<std::string> point_lists;  ///< options that take several points after one another
+  const char* details;                ///< text after the options; may be empty
+  std::set<std::string> point_lists;  ///< options that take several points in a row
   std::function<void(CLI::App&, Invocation&)> define;
-  std::function<void(const Invocation&)> check;  ///< what must be there
-  bool writes = false;                           ///< files, so that --force has a meaning
+  std::function<void(const Invocation&)> check;  ///< checks that required options are there
+  bool writes = false;  ///< the verb writes files, so that --force has a meaning
 };
 
 /// In the order of `palpate --help`.
 [[nodiscard]] const std::vector<Verb>& verbs();
 /// Null if there is none.
 [[nodiscard]] const Verb* findVerb(std::string_view name);
-/// The parser of one verb; what it reads goes to `invocation`, which must outlive it.
+/// Makes the parser of one verb; it stores its results in `invocation`, which must outlive it.
 [[nodiscard]] std::unique_ptr<CLI::App> makeApp(const Verb& verb, Invocation& invocation);
 
 // scene_verbs.cpp
@@ -41,11 +41,11 @@ struct Verb {
 [[nodiscard]] Verb renderVerb();
 [[nodiscard]] Verb replayVerb();
 [[nodiscard]] Verb reportVerb();
-/// What the hand holds.
+/// Options for the device in the hand.
 void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::string& what);
 /// The names of the simulated devices.
 [[nodiscard]] std::string deviceModels();
-/// "" for a file that has a name.
+/// Checks the name of a file: returns "" unless it is empty.
 [[nodiscard]] std::string named(const std::string& text);
 // file_verbs.cpp
 [[nodiscard]] Verb bakeVerb();
@@ -55,7 +55,7 @@ void addDevice(CLI::App& app, const char* group, DeviceOptions& o, const std::st
 [[nodiscard]] Verb benchVerb();
 [[nodiscard]] Verb helpVerb();
 
-/// What a scan or, if `meshes`, a mesh leaves open.
+/// Options for facts that a scan or, if `meshes`, a mesh does not state.
 void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes);
 
 // view_verb.cpp
@@ -73,7 +73,7 @@ void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes);
 // device_verbs.cpp
 [[nodiscard]] Verb devicesVerb();
 [[nodiscard]] Verb doctorVerb();
-/// How a device that a hand holds is reached.
+/// Options that say how to reach a device that a hand holds.
 void addRealDevice(CLI::App& app, RealDeviceOptions& o);
 
 // help.cpp
@@ -101,7 +101,7 @@ const Options& chosen(const Invocation& invocation) {
   return std::get<Options>(invocation.options);
 }
 
-/// An option with a value called `what` in --help, in help group `group`.
+/// An option whose value is called `what` in --help, in help group `group`.
 template <class T>
 CLI::Option* add(CLI::App& app, const char* group, const char* names, const char* what, T& value,
                  const char* text) {
@@ -114,7 +114,7 @@ inline void addFlag(CLI::App& app, const char* group, const char* names, bool& v
   app.add_flag(names, value, text)->group(group);
 }
 
-/// A list that takes one value for each mention.
+/// A list option that takes one value each time it is given.
 template <class T>
 CLI::Option* addList(CLI::App& app, const char* group, const char* names, const char* what,
                      std::vector<T>& values, const char* text) {
@@ -122,7 +122,7 @@ CLI::Option* addList(CLI::App& app, const char* group, const char* names, const 
   return option->expected(1)->take_all()->allow_extra_args(false);
 }
 
-/// One of a few words. `what` is them, "a|b", if it is not given.
+/// An option for one of a few words. If `what` is not given, it is these words: "a|b".
 template <class T>
 void addChoice(CLI::App& app, const char* group, const char* names,
                const std::vector<std::string>& words, T& value, const char* text,

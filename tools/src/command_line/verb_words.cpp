@@ -7,14 +7,14 @@
 namespace palpate::tools {
 namespace {
 
-/// "sform|qform" and the set of a check, "{sform,qform}", as words.
+/// The words of "sform|qform", or of a set that a check allows, "{sform,qform}".
 std::vector<std::string> choicesOf(const CLI::Option& option) {
   std::string type = option.get_type_name();
   const std::size_t open = type.find('{');
   if (open == std::string::npos) return {};
   type = type.substr(open + 1, type.find('}') - open - 1);
   std::vector<std::string> words = CLI::detail::split(type, ',');
-  // Sets are in no order that is kept.
+  // Sets are listed in no particular order.
   std::sort(words.begin(), words.end());
   return words;
 }

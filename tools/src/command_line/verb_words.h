@@ -1,5 +1,6 @@
 #pragma once
-/// Verbs and options as plain words, for what is written from their declarations besides --help.
+/// Verbs and options as plain words, for documents that are generated from their declarations
+/// besides --help.
 
 #include <string>
 #include <vector>
@@ -8,10 +9,10 @@ namespace palpate::tools {
 
 struct OptionWords {
   std::vector<std::string> names = {};  ///< "-o", "--output"
-  std::string value = {};               ///< what stands behind it, for people; empty: a flag
+  std::string value = {};               ///< name of its value, for people; empty: a flag
   std::string help = {};
   std::string group = {};
-  std::vector<std::string> choices = {};  ///< empty: anything
+  std::vector<std::string> choices = {};  ///< allowed values; empty: any
   bool is_file = false;
 };
 
@@ -30,8 +31,8 @@ struct VerbWords {
 /// palpate(1), in the man macros of roff.
 [[nodiscard]] std::string manPage(const std::vector<VerbWords>& verbs);
 
-/// A script that completes verbs, options, their words and files in `shell`, one of bash, zsh and
-/// fish; behind `palpate help scene` also `scene_words`.
+/// A script that completes verbs, options, their values and files in `shell`: bash, zsh or fish.
+/// After `palpate help scene` it also completes `scene_words`.
 [[nodiscard]] std::string completion(const std::string& shell, const std::vector<VerbWords>& verbs,
                                      const std::vector<std::string>& scene_words);
 

@@ -47,7 +47,7 @@ std::vector<DeviceFinding> falcons() {
   return {none};
 }
 
-/// Those that fit, and one finding for all that this user may not open.
+/// The usable input devices, and one finding for all those that this user may not open.
 std::vector<DeviceFinding> inputs() {
   const DeviceFinding none{"evdev", "SpaceMouse, gamepad or mouse, /dev/input/event*",
                            "",      false,

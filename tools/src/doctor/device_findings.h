@@ -1,5 +1,5 @@
 #pragma once
-/// Which haptic devices can be reached from here, and what is in the way.
+/// Finds out which haptic devices can be reached from here, and what prevents that.
 
 #include <string>
 #include <vector>
@@ -11,11 +11,11 @@ namespace palpate::tools {
 
 /// One way to a device.
 struct DeviceFinding {
-  std::string name;   ///< of --device
+  std::string name;   ///< name for --device
   std::string title;  ///< "Novint Falcon, USB 0403:cb48"
   std::string found;  ///< "none plugged in", "bus 1 address 4, serial X", ...
   bool is_ready = false;
-  std::string remedy;  ///< empty if there is none
+  std::string remedy;  ///< empty if there is nothing to do
   std::string notice = devices::kUnverifiedNotice;
 };
 

@@ -31,7 +31,7 @@ std::string firstLine(const std::string& file) {
 
 std::string errorText(int error) { return std::generic_category().message(error); }
 
-/// Asks for it in a thread of its own, so that nothing of this one changes.
+/// Asks for real-time priority in another thread, so that this one keeps its own.
 int tryPriority() {
   int error = 0;
   std::thread probe([&error] {

@@ -1,17 +1,17 @@
 #pragma once
-/// What this machine and this user allow a real-time loop.
+/// Checks what this machine and this user's rights allow a real-time loop.
 
 #include <string>
 #include <vector>
 
 namespace palpate::tools {
 
-/// One thing that was looked at.
+/// The result of one check.
 struct Finding {
   std::string what;   ///< "real-time priority"
   std::string found;  ///< "refused: limit 0"
   bool is_good = true;
-  std::string remedy;  ///< what to do if it is not good; one line
+  std::string remedy;  ///< what to do if the result is not good; one line
 };
 
 [[nodiscard]] std::vector<Finding> realtimeFindings();

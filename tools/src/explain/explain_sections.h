@@ -1,5 +1,5 @@
 #pragma once
-/// The sections of `palpate explain`, each in words for people and under its keys for programs.
+/// The sections of `palpate explain`, in words for people and under their keys for programs.
 
 #include <string>
 
@@ -10,25 +10,25 @@
 
 namespace palpate::tools {
 
-/// How the device lies in the scene.
+/// How the device is placed in the scene.
 void addDevice(const Scene& scene, Report& report);
 void addRegions(const Scene& scene, Report& report);
 /// Walls between regions, and sheets within one.
 void addWalls(const Scene& scene, Report& report);
 void addPorts(const Scene& scene, const SceneDescription& description, Report& report);
 void addTransitions(const Scene& scene, const SceneDescription& description, Report& report);
-/// The same as an SVG page.
+/// The table of transitions as an SVG page.
 [[nodiscard]] std::string transitionPicture(const Scene& scene, const SceneDescription& description,
                                             const std::string& title);
 /// Parameters that differ from place to place.
 void addMaps(const Scene& scene, const SceneDescription& description, Report& report);
-/// Contrasts of stiffness, and shading that looks further than a grid knows.
+/// Contrasts of stiffness, and shading that needs a wider band than a grid has.
 void addWallNotes(const Scene& scene, Report& report);
-/// What the device, if one is named, can hold of the scene at `rate` [Hz].
+/// What stiffness the device, if one is named, can render of the scene at `rate` [Hz].
 void addStability(const Scene& scene, const DeviceOptions& device, double rate, Report& report);
-/// What fields and layers are made from, whether they were made, and what that takes.
+/// The sources of fields and layers, whether they were made, and what that costs.
 void addSources(const Scene& scene, const LoadedScene& loaded, Report& report);
-/// What all of the scene, and what is needed of it, cost: both are read and made anew.
+/// What the whole scene costs, and what its needed part costs: both are read and made anew.
 void addMeasured(const std::string& file, Console& console, Report& report);
 
 }  // namespace palpate::tools

@@ -12,7 +12,8 @@
 #include "text.h"
 #include "wall_notes.h"
 
-// What a scene's parameters and fields come from, what is to be known of them, and what they cost.
+// Sections on the sources of a scene's parameters and fields, on notes about them, and on their
+// cost.
 
 namespace palpate::tools {
 

@@ -3,7 +3,7 @@
 #include "report_rows.h"
 #include "text.h"
 
-// What there is in a scene, and what parts it.
+// Sections on the regions of a scene, and on the walls between them.
 
 namespace palpate::tools {
 namespace {

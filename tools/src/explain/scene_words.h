@@ -1,5 +1,5 @@
 #pragma once
-/// What a scene's walls, contents and ports are called in print.
+/// Names for a scene's walls, contents and ports in reports.
 
 #include <string>
 #include <vector>
@@ -11,12 +11,12 @@
 
 namespace palpate::tools {
 
-/// None for an index below 0.
+/// Null for an index below 0.
 [[nodiscard]] const Material* materialOf(const Scene& scene, int index);
-/// "skin (300 N/m)", "absent", or "-" for none.
+/// "skin (300 N/m)", "absent", or "-" if there is no wall.
 [[nodiscard]] std::string wallText(const Scene& scene, const Wall& wall);
 [[nodiscard]] std::string contentText(const Material& content);
-/// Of a port as it was written; none for one that the scene made by itself.
+/// The description of a port as it was written; null for one that the scene made by itself.
 [[nodiscard]] const PortDescription* describedPort(const SceneDescription& description,
                                                    const std::string& name);
 /// Where and when a port is open.

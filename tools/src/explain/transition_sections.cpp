@@ -8,7 +8,7 @@
 #include "text.h"
 #include "transition_graph.h"
 
-// Where the probe can go, and when.
+// Sections on where the probe can go, and when.
 
 namespace palpate::tools {
 namespace {}  // namespace

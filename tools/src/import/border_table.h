@@ -1,5 +1,5 @@
 #pragma once
-/// What stands between two tissues that touch: data/materials/borders.yaml.
+/// The wall between two tissues that touch: data/materials/borders.yaml.
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,7 @@ enum class TissueClass {
   kMembrane,
   kFluid,
   kGas,
-  kOutside  ///< what has no label and is in no body; no tissue has it
+  kOutside  ///< space without a label outside any body; no tissue has this class
 };
 inline constexpr std::size_t kTissueClasses = 6;
 [[nodiscard]] const char* className(TissueClass of);
@@ -23,15 +23,15 @@ inline constexpr std::size_t kTissueClasses = 6;
 struct Border {
   enum class Wall { kNone, kFirst, kSecond, kStiffer };
   Wall wall = Wall::kNone;
-  bool ruptures = false;  ///< a port each way
-  bool lining = false;    ///< the lining of either, if it has one, is there instead
+  bool ruptures = false;  ///< a port in each direction
+  bool lining = false;    ///< if one of the two has a lining, the lining is the wall
 };
 
 class BorderTable {
  public:
-  /// `wall` names the first or second of these two.
+  /// `wall` refers to the first or the second of the two arguments.
   [[nodiscard]] const Border& between(TissueClass first, TissueClass second) const;
-  /// The project's own. @throws Error (kInput) if it does not have every pair once.
+  /// The project's own table. @throws Error (kInput) unless it has every pair exactly once.
   [[nodiscard]] static const BorderTable& own();
 
  private:

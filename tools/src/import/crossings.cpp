@@ -7,7 +7,7 @@
 namespace palpate::tools {
 namespace {
 
-/// Regions of one tissue; what is outside and the unlabeled rest of a body are one each.
+/// The regions of one tissue; the outside, and the unlabeled rest of a body, are one group each.
 struct Group {
   const Tissue* tissue = nullptr;  ///< null: outside
   TissueClass kind = TissueClass::kOutside;
@@ -15,7 +15,7 @@ struct Group {
   std::vector<std::size_t> regions;
 };
 
-/// Between two groups.
+/// The wall and the ports between two groups.
 struct Meeting {
   const Tissue* wall = nullptr;  ///< null: absent
   bool opens = false;
@@ -84,10 +84,11 @@ class CrossingMaker {
     return tissues_.wallStiffness(*group.tissue).value;
   }
 
-  /// `outer` comes before `inner`.
+  /// `outer` comes before `inner` in the order of layers.
   [[nodiscard]] Meeting meeting(const Group& outer, const Group& inner) const {
     if (inner.is_gap) {
-      // The skin is a wall here, without a layer of its own: out of it is as hard as into it.
+      // The skin is a wall here, without a layer of its own: leaving takes as much force as
+      // entering.
       return {skin_, skin_->opens_at.has_value(), toEnter(skin_), toEnter(skin_), toReopen(skin_)};
     }
     const Border& border = BorderTable::own().between(outer.kind, inner.kind);
@@ -96,7 +97,7 @@ class CrossingMaker {
     if (border.lining && lining != nullptr) {
       result = {lining, true, toEnter(lining), toLeave(lining), toReopen(lining)};
     } else if (border.wall != Border::Wall::kNone) {
-      // The rest of a body has no surface of its own but its skin.
+      // The unlabeled rest of a body has no surface of its own except its skin.
       const bool is_first = border.wall == Border::Wall::kFirst ||
                             (border.wall == Border::Wall::kStiffer && !outer.is_gap &&
                              stiffness(outer) > stiffness(inner));
@@ -106,7 +107,8 @@ class CrossingMaker {
         if (is_first) std::swap(result.in, result.out);
       }
     }
-    // The body's own skin leads in; a label that reaches out of the body is beneath it too.
+    // The body's own skin is the way in; a label that sticks out of the body counts as beneath the
+    // skin too.
     const bool is_beneath = scan_.has_body && outer.kind == TissueClass::kOutside &&
                             inner.tissue->name != "skin" && inner.kind != TissueClass::kGas;
     if (is_beneath) {
@@ -116,18 +118,19 @@ class CrossingMaker {
     return result;
   }
 
-  /// The wall's own forces, as its stiffness is its own: into the owner, and out of it.
+  /// Sets the forces of the wall's owner: into the owner and out of it, as the stiffness is the
+  /// owner's too.
   static void rupture(const Group& owner, Meeting& result) {
-    if (owner.tissue == nullptr) return;  // what is outside has no wall
+    if (owner.tissue == nullptr) return;  // the outside has no wall
     result.in = toEnter(owner.tissue);
     result.out = toLeave(owner.tissue);
     result.reopens = toReopen(owner.tissue);
     result.opens = result.in.force != nullptr || owner.is_gap;
-    // What fills a body has no tough surface to any side.
+    // The unlabeled rest of a body has no tough surface towards any side.
     if (owner.is_gap) result.in = result.out;
   }
 
-  /// The wall of a later layer where nothing else is said.
+  /// The wall of a later layer where no border is stated.
   [[nodiscard]] const Tissue* ownWall(const Group& group) const {
     return group.is_gap ? skin_ : isFlowing(group) ? nullptr : group.tissue;
   }
@@ -180,11 +183,12 @@ class CrossingMaker {
     if (!met.opens) return;
     const std::vector<std::size_t> touch = touching(outer, inner);
     if (touch.empty()) return;
-    // Between two tissues a port is everywhere: smoothed walls may meet where voxels did not.
+    // A port between two tissues is open on the whole wall: smoothed walls may meet where voxels
+    // did not.
     addPort(outer.regions, outer.kind == TissueClass::kOutside ? touch : inner.regions, met);
   }
 
-  /// Two regions of one tissue.
+  /// Adds the wall or the ports between regions of one tissue.
   void meetItself(const Group& group) {
     if (group.regions.size() < 2 || group.kind == TissueClass::kRigid || isFlowing(group)) return;
     if (group.tissue->parcels_joined) {
@@ -198,7 +202,7 @@ class CrossingMaker {
       addPort(group.regions, group.regions, met);
       return;
     }
-    // Where the two differ, into the later is in.
+    // If the two forces differ, entering means moving into the later region.
     for (std::size_t n = 1; n < group.regions.size(); ++n) {
       Group one = group;
       Group before = group;
@@ -233,7 +237,7 @@ class CrossingMaker {
   const ImportedScan& scan_;
   const TissueTable& tissues_;
   const Tissue* skin_ = nullptr;
-  std::vector<Group> groups_;  ///< as the layers are listed
+  std::vector<Group> groups_;  ///< in the order of the layers
   Crossings made_;
 };
 

@@ -1,6 +1,5 @@
 #pragma once
-/// The walls between regions, and the ports that lead through them: by the classes of their
-/// tissues.
+/// The walls between regions and the ports through them, from the classes of their tissues.
 
 #include <cstddef>
 #include <string>
@@ -11,27 +10,27 @@
 
 namespace palpate::tools {
 
-/// A force, and the tissue whose it is; none: 0 N.
+/// A force, and the tissue that it comes from; null: 0 N.
 struct TissueForce {
   const SourcedNumber* force = nullptr;
   const Tissue* of = nullptr;
-  const char* what = "";  ///< the key of the tissue that it is
+  const char* what = "";  ///< the tissue's key for this force
 
   [[nodiscard]] std::string text() const { return force != nullptr ? force->text : "0 N"; }
   friend bool operator==(const TissueForce& a, const TissueForce& b) { return a.force == b.force; }
 };
 
-/// A port of all of `outer` into all of `inner`.
+/// A port from all regions of `outer` into all regions of `inner`.
 struct Passage {
   std::string name;
   std::vector<std::size_t> outer;
   std::vector<std::size_t> inner;
   TissueForce in;
   TissueForce out;
-  TissueForce reopens;  ///< no force: it leaves no hole
+  TissueForce reopens;  ///< no force: the port leaves no hole
 };
 
-/// A wall that is not the own of the later of its two layers.
+/// A wall between two layers that is not the later layer's own.
 struct WallBetween {
   std::vector<std::size_t> outer;
   std::vector<std::size_t> inner;
@@ -40,7 +39,7 @@ struct WallBetween {
 
 struct Crossings {
   std::vector<WallBetween> walls;
-  std::vector<Passage> ports;  ///< first that of the skin
+  std::vector<Passage> ports;  ///< that of the skin is first
 };
 
 /// @throws Error (kInput) as requireTissue().

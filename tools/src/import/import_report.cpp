@@ -116,7 +116,7 @@ class ImportReport {
     return voxels * std::abs(glm::determinant(scan_.labels.axes));
   }
 
-  /// Each label by itself; regions that are joined have several.
+  /// Lists each label by itself; a region of joined labels has several.
   void labels() {
     Json json = Json::array();
     const auto add = [&](const std::vector<int>& labels, Json more) {
@@ -151,7 +151,7 @@ class ImportReport {
     report_.json["labels"] = std::move(json);
   }
 
-  /// What fits no tissue, the largest first: nothing is guessed silently.
+  /// Lists labels without a tissue, the largest first: nothing is guessed silently.
   void unknown() {
     std::vector<std::pair<double, std::size_t>> found;
     for (std::size_t r = 0; r < scan_.plan.regions.size(); ++r) {
@@ -191,7 +191,8 @@ class ImportReport {
     return formatVector(place * 1e3) + " mm";
   }
 
-  /// Pieces far smaller than the largest of their region, and cavities, with their places.
+  /// Lists pieces far smaller than the largest one of their region, and cavities, with their
+  /// places.
   void islands() {
     Json found = Json::array();
     std::size_t count = 0;
@@ -250,7 +251,7 @@ class ImportReport {
     if (count > kMostTold) report_.text += "  and " + formatCount(count - kMostTold) + " more\n";
   }
 
-  /// The way that was asked for: what it leads through, and what is felt.
+  /// Describes the requested way: what it leads through, and what is felt.
   void way() {
     if (way_ == nullptr) return;
     Table table({"tissues on the way", "tissue", "mm", "N to get in", "N at its end"});
@@ -294,7 +295,7 @@ class ImportReport {
       add(region.area, region.volume);
       body += region.volume;
     }
-    // The body's surface is that of the outside, borders and all.
+    // The body's surface is that of the outside, including its area on the image's border.
     if (scan_.has_body) add(scan_.survey.regions[scan_.survey.outside()].area, body);
     const double memory = estimateMemory(scan_, tissues_, sum.active_voxels);
     report_.json["estimate"] = {{"active_voxels", std::llround(sum.active_voxels)},

@@ -1,5 +1,5 @@
 #pragma once
-/// What `palpate import` tells: regions, islands, what was changed, and what the grids will cost.
+/// The report of `palpate import`: regions, islands, changes, and the estimated cost of the grids.
 
 #include <string>
 #include <vector>
@@ -10,8 +10,7 @@
 
 namespace palpate::tools {
 
-/// `way`: the one that was asked for, or null. `written`: the files that were; none if it was a dry
-/// run.
+/// `way`: the requested one, or null. `written`: the files that were written; empty for a dry run.
 [[nodiscard]] Report importReport(const ImportOptions& options, const ImportedScan& scan,
                                   const TissueTable& tissues, const NeedleWay* way,
                                   const std::vector<std::string>& written);

@@ -14,19 +14,19 @@
 namespace palpate::tools {
 namespace {
 
-/// [voxels] on each side of a surface, as scenes have it.
+/// [voxels] of the band on each side of a surface, the default of scenes.
 constexpr double kHalfWidth = 6.0;
-// Measured on a pelvis of 28 labels and five other scans, as the most that `palpate touch` had at a
-// time: all were within a tenth of this.
+// Measured on a pelvis of 28 labels and on five other scans, as the largest memory of `palpate
+// touch` at any time: all were within a tenth of this estimate.
 constexpr double kBytesOfCommand = 75e6;
-constexpr double kBytesPerVoxel = 105.0;     // active, of the grids: labels, grid and bricks
-constexpr double kBytesPerImageVoxel = 4.0;  // as they are read
-/// 16 bits in blocks of 8^3 with a rim; those of one value are not stored.
+constexpr double kBytesPerVoxel = 105.0;     // active voxels of the grids: labels, grid and bricks
+constexpr double kBytesPerImageVoxel = 4.0;  // while images are read
+/// 16 bits, in blocks of 8^3 with a border; blocks of one value are not stored.
 constexpr double kBytesPerMapVoxel = 2.0 * (10.0 * 10.0 * 10.0) / (8.0 * 8.0 * 8.0);
 // With two cores.
 constexpr double kSecondsPerVoxel = 5e-6;
 
-/// As a key or a plain name, quoted only where it must be.
+/// A key or plain name, quoted only if it must be.
 std::string word(const std::string& text) {
   const auto is_safe = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -96,14 +96,13 @@ class SceneWriter {
     }
     line("palpate: 1");
     line("length: mm");
-    // Deep in bone a wall asks for far more than any device has, and for more than a hand should
-    // get.
+    // Deep in bone, a wall asks for far more force than any device has, and than a hand should get.
     line(
         "force: {max: 7.9 N, slew: 2000 N/s}  # the most that a Touch X exerts; 2 N more in a "
         "millisecond");
   }
 
-  /// What was asked for where the scan leaves something open; images that are written here leave
+  /// The user's choices where the scan leaves something open; images that this code writes leave
   /// nothing open.
   [[nodiscard]] std::string reading() const {
     const ScanOptions& o = options_.reading;
@@ -170,7 +169,7 @@ class SceneWriter {
           tissue->hasWall() ? tissues_.wallStiffness(*tissue) : SourcedNumber{};
       line("  # " + tissue->name);
       if (!tissue->hasWall()) {
-        // A fluid: drag is all that is felt.
+        // A fluid is felt as drag only.
       } else if (isMapped(*tissue)) {
         const SourcedTransfer& of_ct = *tissue->stiffness_of_ct;
         line("  #   stiffness by CT number " + of_ct.text + ": " + basisName(of_ct.basis) + ": " +
@@ -281,7 +280,7 @@ class SceneWriter {
     line(
         "ports:   # `opens_at` from the first to the second, `back` from the second to the first, "
         "`hole`: either way where one is");
-    // A tip that overlaps a hole of its own size finds it.
+    // The tip finds a hole of its own size if it overlaps the hole.
     const std::string hole_at =
         ", hole: {radius: " + millimeters(2.0 * tissues_.tip_radius.value) + " mm, reopens_at: ";
     std::vector<const SourcedNumber*> told;
@@ -336,7 +335,7 @@ std::vector<std::pair<std::string, double>> ImportedScan::neighborsOf(std::size_
 
 GridEstimate estimateGrid(double area, double volume, double voxel) {
   GridEstimate estimate;
-  // What is thin has less inside than a band is wide.
+  // A thin part has less inside than the band is wide.
   const double side = kHalfWidth * area / (voxel * voxel);
   estimate.active_voxels = side + std::min(side, volume / (voxel * voxel * voxel));
   estimate.seconds = estimate.active_voxels * kSecondsPerVoxel;

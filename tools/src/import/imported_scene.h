@@ -1,5 +1,5 @@
 #pragma once
-/// A scanned body as regions, and the scene file made of them.
+/// A scanned body as regions, and the scene file that is made from them.
 
 #include <cstdint>
 #include <map>
@@ -13,7 +13,7 @@
 
 namespace palpate::tools {
 
-/// Labels of air that reach the image's border: they are outside, and no region.
+/// Labels of air that reach the image's border: they are outside, not regions.
 struct OpenAir {
   std::string name;
   std::vector<int> labels;
@@ -22,40 +22,40 @@ struct OpenAir {
   double volume = 0.0;  ///< [m3]
 };
 
-/// That a scene's header suggests.
+/// A way to touch the scene that its header suggests.
 struct SuggestedWay {
   std::string what;  ///< "from the front to the middle"
   Vec3 from{0.0};    ///< [m]
   Vec3 to{0.0};      ///< [m]
 };
 
-/// All that the scene is written from.
+/// Everything that the scene is written from.
 struct ImportedScan {
   vdb::Image labels;
   vdb::NameTable names;
   std::map<int, std::uint64_t> counts;  ///< voxels of each label, before any change
   RegionPlan plan;
   std::vector<OpenAir> open_air;
-  vdb::LabelSurvey survey;  ///< of the plan's regions
+  vdb::LabelSurvey survey;  ///< for the plan's regions
   bool has_body = false;
-  vdb::VoxelMask body;                     ///< the voxels of the body; empty without one
-  std::optional<SuggestedWay> way;         ///< not given: one of six is looked for
-  std::vector<int> body_labels;            ///< of its mask, if it is from one
-  std::uint64_t image_voxels = 0;          ///< of all images that the scene reads
-  std::uint64_t ct_voxels = 0;             ///< of the one that stiffness comes from; 0: none
-  double voxel = 0.0;                      ///< [m] of the grids
-  std::vector<vdb::IslandChange> changes;  ///< that were made to the labels
+  vdb::VoxelMask body;              ///< the voxels of the body; empty without one
+  std::optional<SuggestedWay> way;  ///< not given: the best of six ways is chosen
+  std::vector<int> body_labels;     ///< the labels of its mask, if the body comes from a mask
+  std::uint64_t image_voxels = 0;   ///< of all images that the scene reads
+  std::uint64_t ct_voxels = 0;      ///< of the image that stiffness comes from; 0: none
+  double voxel = 0.0;               ///< [m] of the grids
+  std::vector<vdb::IslandChange> changes;  ///< changes made to the labels
 
   [[nodiscard]] std::string nameOf(std::size_t region) const;
-  /// What touches a region, with its share of the region's surface, the largest first; what the
-  /// image's border cuts off touches nothing that is known.
+  /// The neighbors of a region, with their shares of the region's surface, the largest first; parts
+  /// cut by the image's border have no known neighbor.
   [[nodiscard]] std::vector<std::pair<std::string, double>> neighborsOf(std::size_t region) const;
 };
 
-/// Of a volume in [m3].
+/// Formats a volume given in [m3].
 [[nodiscard]] std::string cubicCentimeters(double volume);
 
-/// What a grid will take, before it is made.
+/// An estimate of what a grid costs, before it is made.
 struct GridEstimate {
   double active_voxels = 0.0;
   double seconds = 0.0;  ///< with two cores
@@ -63,16 +63,16 @@ struct GridEstimate {
 /// `area` [m2] of the surface, `volume` [m3] inside, `voxel` [m].
 [[nodiscard]] GridEstimate estimateGrid(double area, double volume, double voxel);
 
-/// Of all regions, those of a body first, and of their linings; each once.
+/// The tissues of all regions, those of a body first, and of their linings; each once.
 /// @throws Error (kInput) as requireTissue().
 [[nodiscard]] std::vector<const Tissue*> tissuesOf(const ImportedScan& scan,
                                                    const TissueTable& tissues);
 
-/// [bytes] The most that `palpate touch` will have at a time, about.
+/// [bytes] Estimate of the largest memory of `palpate touch` at any time.
 [[nodiscard]] double estimateMemory(const ImportedScan& scan, const TissueTable& tissues,
                                     double active_voxels);
 
-/// Files as the scene names them.
+/// File names as the scene uses them.
 struct SceneFiles {
   std::vector<std::string> labels;  ///< one image, or masks
   std::string names;                ///< may be empty

@@ -20,10 +20,10 @@ namespace {
 
 constexpr int kDirections = 10'000;  // 2 degrees apart
 constexpr double kBefore = 0.02;     // [m] in front of the body
-constexpr int kAround = 8;           // points around the way that must be clear as well
-constexpr double kGrain = 1e-4;      // [m] ends of a way are written in tenths of a millimeter
+constexpr int kAround = 8;           // points around the way that must be clear, too
+constexpr double kGrain = 1e-4;      // [m] ends of a way are rounded to tenths of a millimeter
 
-/// What it takes to go from one region to another.
+/// The force it takes to go from one region into another.
 class Borders {
  public:
   Borders(const ImportedScan& scan, const TissueTable& tissues) : scan_(scan) {
@@ -40,7 +40,7 @@ class Borders {
     }
   }
 
-  /// [N]; nothing where a wall is closed.
+  /// [N]; nothing where the wall is closed.
   [[nodiscard]] std::optional<double> force(std::size_t from, std::size_t to) const {
     const auto at = forces_.find({from, to});
     if (at != forces_.end()) return at->second;
@@ -62,7 +62,7 @@ class Borders {
   static double valueOf(const TissueForce& force) {
     return force.force != nullptr ? force.force->value : 0.0;
   }
-  /// Of its layer: outside, the rest of the body, then the regions as they are listed.
+  /// Rank of a region's layer: outside, the rest of the body, then the regions in their order.
   [[nodiscard]] std::size_t rank(std::size_t region) const {
     return region == scan_.survey.outside() ? 0 : region == scan_.survey.gap() ? 1 : region + 2;
   }
@@ -72,7 +72,8 @@ class Borders {
 
   const ImportedScan& scan_;
   std::set<std::pair<std::size_t, std::size_t>> free_;
-  std::set<std::pair<std::size_t, std::size_t>> closed_;  ///< by a wall other than the later's own
+  /// Closed by a wall other than the later layer's own
+  std::set<std::pair<std::size_t, std::size_t>> closed_;
   std::map<std::pair<std::size_t, std::size_t>, double> forces_;
 };
 
@@ -107,7 +108,7 @@ class NeedleWayFinder {
   }
 
  private:
-  /// The n-th of evenly spread directions (a spiral from pole to pole that turns by the golden
+  /// The n-th of evenly spread directions (a spiral from pole to pole with steps of the golden
   /// angle).
   static Vec3 direction(int n) {
     const double z = 1.0 - (2.0 * n + 1.0) / kDirections;
@@ -116,7 +117,7 @@ class NeedleWayFinder {
     return {r * std::cos(angle), r * std::sin(angle), z};
   }
 
-  /// Outwards from `to`, or nothing where something closes it, which is counted then.
+  /// A way from `to` outwards; nothing if something closes it, which is then counted.
   std::optional<NeedleWay> along(const Vec3& to, const Vec3& outwards, double clearance) {
     const std::optional<std::vector<Stretch>> stretches = walk(to, outwards);
     if (!stretches) return std::nullopt;
@@ -147,7 +148,7 @@ class NeedleWayFinder {
       const RegionSampler::Sample here = sampler_.at(to + (n * step_) * outwards);
       if (here.region != outside && isForbidden(here.region)) return closedBy(here.region);
       if (found.empty() || found.back().region != here.region) {
-        // In from outside is the way that is gone.
+        // The needle will go the opposite way: from outside to the target.
         if (!found.empty() && !borders_.force(here.region, found.back().region)) {
           return closedBy(here.region == outside ? found.back().region : here.region);
         }
@@ -181,7 +182,7 @@ class NeedleWayFinder {
     return tissue != nullptr && (tissue->kind == TissueClass::kRigid || tissue->is_spared);
   }
 
-  /// Whether all around the way, at `clearance` from it, nothing must be kept clear of.
+  /// Whether everything around the way, at the distance `clearance`, may be touched.
   bool isClear(const Vec3& to, const Vec3& outwards, double body, double clearance) {
     const Vec3 other = std::abs(outwards.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
     const Vec3 u = glm::normalize(glm::cross(outwards, other));
@@ -200,7 +201,7 @@ class NeedleWayFinder {
     return true;
   }
 
-  /// Stretches as the needle meets them, and what it feels.
+  /// Fills in the parts in the order in which the needle meets them, with the predicted forces.
   void fill(const std::vector<Stretch>& stretches, NeedleWay& way) const {
     double friction = 0.0;
     std::size_t last = scan_.survey.outside();
@@ -219,7 +220,7 @@ class NeedleWayFinder {
     }
   }
 
-  /// Its ends in tenths of a millimeter, if the way between those is open too.
+  /// The way with its ends rounded to tenths of a millimeter, if that way is open too.
   NeedleWay rounded(const NeedleWay& way) {
     const auto grain = [](const Vec3& p) { return glm::round(p / kGrain) * kGrain; };
     const Vec3 from = grain(way.from);
@@ -252,7 +253,8 @@ class NeedleWayFinder {
   WayTarget target_;
   RegionSampler sampler_;
   double step_ = 1e-3;
-  std::map<std::size_t, int> closed_;  ///< directions, by what closes them first
+  /// Number of directions, by the region that closes them first
+  std::map<std::size_t, int> closed_;
 };
 
 }  // namespace

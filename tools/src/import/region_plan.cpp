@@ -60,7 +60,7 @@ std::vector<int> labelsOf(const std::string& entry, const ImportOptions& options
   return wanted;
 }
 
-/// What a layer may be called; characters that mean something in scenes become underscores.
+/// A valid name for a layer; characters with a meaning in scenes become underscores.
 std::string layerName(std::string name) {
   for (char& c : name) {
     const auto code = static_cast<unsigned char>(c);
@@ -113,7 +113,8 @@ class Planner {
     }
     const auto rank = [&](const PlannedRegion& region) {
       const Tissue& tissue = *region.tissue;
-      // Of two layers the later has the wall: never is it that of what is rigid that gives way.
+      // The later of two layers has the wall, so that rigid tissue must come later: otherwise the
+      // softer one's wall would give way in its place.
       constexpr std::array kOrder = {TissueClass::kGas, TissueClass::kFluid, TissueClass::kSolid,
                                      TissueClass::kMembrane, TissueClass::kRigid};
       const auto place = std::find(kOrder.begin(), kOrder.end(), tissue.kind) - kOrder.begin();
@@ -156,7 +157,7 @@ class Planner {
     plan_.regions.push_back(std::move(region));
   }
 
-  /// Labels of one name are one region.
+  /// Labels with the same name form one region.
   void addSingle(int label) {
     const auto named = names_.find(label);
     if (named == names_.end() && !names_.empty()) {
@@ -193,7 +194,7 @@ class Planner {
   const LabelNames& labels_;
   const vdb::NameTable& names_;
   const TissueTable& tissues_;
-  std::map<int, std::string> taken_;  ///< by --region
+  std::map<int, std::string> taken_;  ///< labels taken by --region
   RegionPlan plan_;
 };
 

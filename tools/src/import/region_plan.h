@@ -1,5 +1,5 @@
 #pragma once
-/// Which labels of a scan become which regions.
+/// Decides which labels of a scan form which regions.
 
 #include <cstdint>
 #include <map>
@@ -14,20 +14,20 @@
 namespace palpate::tools {
 
 struct PlannedRegion {
-  std::string name;         ///< as a layer may be called
-  std::vector<int> labels;  ///< that the image holds
+  std::string name;         ///< a valid name for a layer
+  std::vector<int> labels;  ///< those that the image holds
   const Tissue* tissue = nullptr;
-  std::string why = {};  ///< what decided the tissue
-  bool is_known = true;  ///< false: nothing fits, and the tissue is the table's `unknown`
+  std::string why = {};  ///< the reason for the choice of the tissue
+  bool is_known = true;  ///< false: no tissue fits, and the table's `unknown` is used
 };
 
 struct RegionPlan {
-  /// Gases, fluids, solids, membranes, what is rigid; in each class soft ones first.
+  /// Gases, fluids, solids, membranes, then rigid tissue; in each class soft ones first.
   std::vector<PlannedRegion> regions;
   std::vector<std::string> notes;  ///< what was assumed
 };
 
-/// The region of what no label is.
+/// The region of space in the body without a label.
 inline constexpr const char* kGapName = "soft_tissue";
 
 /// `counts`: voxels of each label of the image.

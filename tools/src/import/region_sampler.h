@@ -1,5 +1,5 @@
 #pragma once
-/// Which region of an imported scan a point lies in, by the voxel nearest to it.
+/// Finds the region of an imported scan at a point, by the nearest voxel.
 
 #include <cstddef>
 #include <unordered_map>
@@ -15,12 +15,12 @@ class RegionSampler {
 
   struct Sample {
     std::size_t region = 0;     ///< or survey.gap(), or survey.outside()
-    bool is_at_border = false;  ///< the voxel is one of the image's outermost, or there is none
+    bool is_at_border = false;  ///< the voxel is an outermost one of the image, or there is none
   };
   /// `world` [m].
   [[nodiscard]] Sample at(const Vec3& world) const;
 
-  /// [m] Around the centers of all voxels that are not outside.
+  /// [m] Box around the centers of all voxels that are not outside.
   [[nodiscard]] const Box3& box() const { return box_; }
 
  private:

@@ -10,8 +10,8 @@
 namespace palpate::tools {
 namespace {
 
-constexpr double kBefore = 0.02;  // [m] of the box
-constexpr double kInto = 1e-3;    // [m] into what is rigid: 2 N at most, as walls go to 2000 N/m
+constexpr double kBefore = 0.02;  // [m] in front of the box
+constexpr double kInto = 1e-3;    // [m] into rigid tissue: 2 N at most, as walls go up to 2000 N/m
 
 struct Side {
   const char* name;
@@ -27,7 +27,7 @@ const std::array<Side, 6> kSides = {{{"front", {0, 1, 0}},
 class WayFinder {
  public:
   explicit WayFinder(const ImportedScan& scan) : scan_(scan), sampler_(scan) {
-    // Whole millimeters read well.
+    // Whole millimeters are easier to read.
     for (int axis = 0; axis < 3; ++axis)
       middle_[axis] = std::round(sampler_.box().center()[axis] * 1e3) * 1e-3;
     step_ = 0.5 * std::cbrt(std::abs(glm::determinant(scan.labels.axes)));
@@ -54,8 +54,8 @@ class WayFinder {
 
  private:
   struct Walk {
-    double end;    // [m] from where it begins
-    double depth;  // [m] of it that is in tissue
+    double end;    // [m] from its beginning
+    double depth;  // [m] length of its part in tissue
   };
 
   Walk walk(const Vec3& from, const Vec3& way, double reach) const {
@@ -66,7 +66,7 @@ class WayFinder {
       const RegionSampler::Sample here = sampler_.at(from + s * way);
       if (here.region >= scan_.survey.gap()) continue;  // no label
       const Tissue* const tissue = scan_.plan.regions[here.region].tissue;
-      // Where the image ends there is a closed wall.
+      // The image ends in a closed wall.
       if (!first && here.is_at_border) return {s + kInto, 0.0};
       if (!first) first = s;
       if (tissue->kind == TissueClass::kRigid) return {std::min(s + kInto, reach), s - *first};

@@ -1,5 +1,5 @@
 #pragma once
-/// The strict reader of maps that scenes have, for tables: these hold no fields and no images.
+/// The strict reader of maps that scenes use, for tables: these hold no fields and no images.
 
 #include <memory>
 #include <string>
@@ -11,7 +11,7 @@ namespace palpate::tools {
 
 class TableLoader final : public SceneLoader {
  public:
-  /// `document` must outlive it. `code`: what its errors begin with.
+  /// `document` must outlive it. `code`: the prefix of its error codes.
   TableLoader(const Document& document, std::string code)
       : document_(document), code_(std::move(code)) {}
   [[nodiscard]] const Document& document() const noexcept override { return document_; }

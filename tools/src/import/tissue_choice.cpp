@@ -123,7 +123,7 @@ class Chooser {
     return at == labels_.names.end() ? nullptr : &at->second;
   }
 
-  /// The region's own name counts, or that all of its labels fit.
+  /// A region fits if its own name does, or if all of its labels do.
   [[nodiscard]] bool fitsRule(const Rule& rule, const NamedLabels& region) const {
     if (matchesGlob(rule.pattern, simplified(region.name))) return true;
     return std::all_of(region.labels.begin(), region.labels.end(), [&](int label) {
@@ -133,7 +133,7 @@ class Chooser {
     });
   }
 
-  /// The one tissue of all labels of a region, or nothing.
+  /// The tissue that all labels of a region share, or nothing.
   template <typename Of>
   [[nodiscard]] static std::optional<std::string> agreed(const std::vector<int>& labels,
                                                          const Of& of) {
@@ -155,7 +155,7 @@ class Chooser {
     return "code " + code.scheme + " " + code.value + " (" + code.meaning + ")";
   }
 
-  /// By the list of codes, else by the words that stand with the code.
+  /// By the list of codes, or else by the words that accompany the code.
   [[nodiscard]] NameVerdict byCode(const NamedLabels& region) const {
     const std::optional<std::string> tissue =
         agreed(region.labels, [&](int label) -> std::optional<std::string> {

@@ -1,5 +1,5 @@
 #pragma once
-/// The tissue of each region: what the user said, else its code, its number or its name.
+/// Chooses the tissue of each region: by the user's option, else by code, number or name.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace palpate::tools {
 
-/// What is known of label values.
+/// Names, codes and numbers of label values.
 struct LabelNames {
   vdb::NameTable names;
   vdb::LabelCodes codes;
@@ -20,16 +20,16 @@ struct LabelNames {
 struct TissueChoice {
   const Tissue* tissue = nullptr;
   std::string why;       ///< the word, code or option that decided
-  bool is_known = true;  ///< false: nothing fits, and it is the table's `unknown`
+  bool is_known = true;  ///< false: no tissue fits, and the table's `unknown` is used
 };
 
-/// A region that wants a tissue.
+/// A region that needs a tissue.
 struct NamedLabels {
   std::string name;
   std::vector<int> labels;
 };
 
-/// In the order of `regions`. `notes` gets what a user should know of a choice.
+/// In the order of `regions`. Adds to `notes` whatever a user should know about a choice.
 /// @throws Error: kUsage for a --tissue that names no tissue or fits no region, kInput for such a
 /// line of a file, or if nothing fits and the table has no `unknown`.
 [[nodiscard]] std::vector<TissueChoice> chooseTissues(const ImportOptions& options,
@@ -38,7 +38,8 @@ struct NamedLabels {
                                                       const TissueTable& tissues,
                                                       std::vector<std::string>& notes);
 
-/// Blanks and hyphens as underscores, capitals small: as patterns of names are compared.
+/// Blanks and hyphens become underscores, and capitals lower case: the form in which patterns of
+/// names are compared.
 [[nodiscard]] std::string simplified(std::string_view name);
 
 }  // namespace palpate::tools

@@ -15,12 +15,12 @@ constexpr const char* kNone = "none";
 bool isCapital(char c) { return c >= 'A' && c <= 'Z'; }
 bool isSmall(char c) { return c >= 'a' && c <= 'z'; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
-/// Letters that are not ASCII are letters.
+/// Bytes of characters beyond ASCII count as letters.
 bool isLetter(char c) {
   return isCapital(c) || isSmall(c) || static_cast<unsigned char>(c) >= 0x80;
 }
 
-/// Without what is in brackets, unless that is all there is.
+/// The name without text in brackets, unless that is all there is.
 std::string withoutBrackets(std::string_view name) {
   std::string result;
   int depth = 0;
@@ -44,7 +44,7 @@ std::string ordinal(const std::string& digits, std::string_view ending) {
   return is_known ? kOrdinals.at(static_cast<std::size_t>(digits[0] - '1')) : "";
 }
 
-/// As it is, with a plural's s, or by its beginning.
+/// Whether a word equals the pattern, is its plural, or begins with it if the pattern ends with *.
 bool fits(std::string_view pattern, std::string_view word) {
   if (pattern.ends_with('*')) return word.starts_with(pattern.substr(0, pattern.size() - 1));
   if (word == pattern) return true;
@@ -61,7 +61,7 @@ bool fitsAny(const Words& patterns, std::string_view word) {
                      [&](const std::string& p) { return fits(p, word); });
 }
 
-/// The words between those of `separators`; no part is empty.
+/// Splits words at those of `separators`; no part is empty.
 std::vector<Words> partsOf(const Words& words, const std::set<std::string_view>& separators) {
   std::vector<Words> parts(1);
   for (const std::string& word : words) {
@@ -75,7 +75,7 @@ std::vector<Words> partsOf(const Words& words, const std::set<std::string_view>&
   return parts;
 }
 
-/// A word as a whole goes before a beginning, and a longer beginning before a shorter one.
+/// A whole word takes precedence over a beginning, and a longer beginning over a shorter one.
 template <typename List>
 const std::string* find(const List& list, const std::string& word) {
   const std::string* best = nullptr;
@@ -95,7 +95,7 @@ NameVerdict byWord(const std::string& tissue, const std::string& word, bool is_s
   return {tissue, "word \"" + word + "\"", is_strong};
 }
 
-/// L5, C2, T12, S1: a vertebra, where that is all the name says.
+/// Whether the name is nothing but that of a vertebra: L5, C2, T12, S1.
 bool isVertebra(std::string_view name) {
   return (name.size() == 2 || name.size() == 3) &&
          std::string_view("CTLS").find(name[0]) != std::string_view::npos &&
@@ -124,7 +124,7 @@ std::vector<std::string> wordsOf(std::string_view name) {
       ++at;
       continue;
     }
-    // Up to where a capital begins a new word: aB, ABc.
+    // Up to where a capital letter begins a new word: aB, ABc.
     ++at;
     while (at < text.size() && isLetter(text[at])) {
       const bool after_small = !isCapital(text[at - 1]) && isCapital(text[at]);
@@ -136,7 +136,7 @@ std::vector<std::string> wordsOf(std::string_view name) {
     std::string word = text.substr(from, at - from);
     std::transform(word.begin(), word.end(), word.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    // "M. psoas": an abbreviation.
+    // An abbreviation, as in "M. psoas".
     if (word.size() <= 3 && at + 1 < text.size() && text[at] == '.' &&
         (text[at + 1] == ' ' || text[at + 1] == '_')) {
       word += '.';
@@ -150,7 +150,7 @@ bool TissueNames::isAside(const std::string& word) const {
   return isDigit(word[0]) || fitsAny(aside_, word);
 }
 
-/// `rest`: the part, and what is behind it in the name.
+/// `rest`: the part itself, and everything behind it in the name.
 NameVerdict TissueNames::ofPart(const Words& part, const Words& rest) const {
   const auto has = [](const Words& in, const std::string& pattern) {
     return std::any_of(in.begin(), in.end(),
@@ -245,7 +245,7 @@ NameVerdict TissueNames::one(const std::string& name, const Context& context) co
     }
     if (decided.tissue == kNone) return {"", decided.why + " alone says no tissue"};
     if (decided.tissue.empty()) continue;
-    // "Rectus" is a gyrus among gyri, and a muscle elsewhere.
+    // "Rectus" is a gyrus among names of gyri, and a muscle elsewhere.
     if (!decided.is_strong && context.is_brain && isBrain(words)) break;
     return inCompany(decided, words, context);
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// Which tissue the name or the code of a label means: data/materials/names.yaml, which says how
-/// names are read.
+/// Finds the tissue that the name or the code of a label means, by data/materials/names.yaml, which
+/// also says how names are read.
 
 #include <map>
 #include <optional>
@@ -14,39 +14,39 @@
 
 namespace palpate::tools {
 
-/// What decided, and for which tissue; no tissue: nothing fits, and why.
+/// The tissue, and the word or code that decided it; no tissue: nothing fits, with the reason.
 struct NameVerdict {
   std::string tissue;
-  std::string why;  ///< word "muscle", SNOMED CT 272673000 (Bone)
-  bool is_strong =
-      false;  ///< more than the name of a structure: words together, or what it is made of
+  std::string why;         ///< word "muscle", SNOMED CT 272673000 (Bone)
+  bool is_strong = false;  ///< stronger than the name of a structure alone: a combination of words,
+                           ///< or its material
 };
 
-/// "ParaHippocampal_L2" as para, hippocampal, l, 2; ordinals as words (3rd: third), what is in
+/// "ParaHippocampal_L2" as para, hippocampal, l, 2; ordinals as words (3rd: third), text in
 /// brackets left out.
 [[nodiscard]] std::vector<std::string> wordsOf(std::string_view name);
 
 class TissueNames {
  public:
-  /// The tissue of each name, all of one image: some words mean another thing among others.
+  /// The tissue of each name. The names are all those of one image, because some words change their
+  /// meaning among others.
   [[nodiscard]] std::vector<NameVerdict> of(const std::vector<std::string>& names) const;
-  /// Of a code, if it is one of those that are listed. A tissue of "none": the words have to say
-  /// more.
+  /// The tissue of a code, if it is a listed one. "none" means that the words have to say more.
   [[nodiscard]] std::optional<std::string> ofCode(const vdb::LabelCode& code) const;
-  /// Of a label's number in a table such as "freesurfer".
+  /// The tissue of a label's number in a table such as "freesurfer".
   [[nodiscard]] std::optional<std::string> ofNumber(const std::string& table, int number) const;
   [[nodiscard]] std::vector<std::string> numberTables() const;
-  /// Each tissue that is named anywhere, once.
+  /// All tissues that the lists mention, each once.
   [[nodiscard]] std::vector<std::string> tissues() const;
 
-  /// The project's own. @throws Error (kInput) for anything but such a table.
+  /// The project's own lists. @throws Error (kInput) if the file has another form.
   [[nodiscard]] static const TissueNames& own();
 
  private:
   friend class NamesReader;
   using Words = std::vector<std::string>;
   struct Word {
-    std::string word;  ///< with * at its end: a beginning
+    std::string word;  ///< a * at its end means: any word that begins so
     std::string tissue;
   };
   struct Together {
@@ -63,7 +63,7 @@ class TissueNames {
     int last = 0;
     std::string tissue;
   };
-  /// What an image's other names say.
+  /// Facts from the other names of an image.
   struct Context {
     bool is_brain = false;
     Words words;  ///< of all names
@@ -87,7 +87,7 @@ class TissueNames {
   std::vector<Company> company_;
   Words brain_words_;
   std::map<std::pair<std::string, std::string>, std::string> codes_;  ///< scheme and value
-  std::map<std::string, std::vector<Numbers>> numbers_;               ///< by table
+  std::map<std::string, std::vector<Numbers>> numbers_;               ///< by name of the table
 };
 
 }  // namespace palpate::tools

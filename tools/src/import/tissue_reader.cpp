@@ -268,7 +268,7 @@ class TableReader {
     }
   }
 
-  /// Tissues that others name must be there.
+  /// Checks that tissues which other tissues name exist.
   void checkNames(const TissueTable& table, const Node& tissues) const {
     if (!table.unknown.empty() && table.find(table.unknown) == nullptr) {
       throw document().error(

@@ -12,9 +12,10 @@
 namespace palpate::tools {
 namespace {
 
-/// Nearly incompressible: of a tissue that says nothing of it.
+/// For a tissue that states no Poisson's ratio: nearly incompressible.
 constexpr double kPoisson = 0.45;
-/// Twice 0.65: the tissue is on both sides of the shaft, and a beam on the ground has it on one.
+/// Twice Vesic's 0.65: tissue is on both sides of the shaft, whereas a beam on the ground has it on
+/// one side.
 constexpr double kVesic = 1.3;
 
 }  // namespace
@@ -105,7 +106,7 @@ std::optional<TissueTable::Lateral> TissueTable::lateral(const Tissue& tissue) c
   const double nu = poissonOf(tissue);
   const SourcedNumber young = modulus(tissue);
   SourcedNumber& stiffness = result.stiffness;
-  // A solid rod's I is pi d^4 / 64: its diameter cancels.
+  // The second moment of area of a solid rod is pi d^4 / 64: its diameter cancels.
   stiffness.value =
       kVesic * std::pow(64.0 * young.value / (std::numbers::pi * shaft_young->value), 1.0 / 12.0) *
       young.value / (1.0 - nu * nu);

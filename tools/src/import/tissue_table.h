@@ -1,6 +1,6 @@
 #pragma once
-/// What tissues feel like, each number with where it is from: data/materials/tissues.yaml, or a
-/// file like it.
+/// The mechanical properties of tissues, each number with its source: data/materials/tissues.yaml,
+/// or a file of the same form.
 
 #include <optional>
 #include <string>
@@ -22,10 +22,10 @@ struct SourcedNumber {
   std::string source = {};
 };
 
-/// Stiffness by the CT number of a voxel: [Hounsfield units], [N/m], by rising CT number.
+/// Stiffness as a function of a voxel's CT number: [Hounsfield units], [N/m], by rising CT number.
 struct SourcedTransfer {
   std::vector<std::pair<double, double>> points;
-  std::string text = {};  ///< as a scene has it: [[-100, 65 N/m], [50, 156 N/m]]
+  std::string text = {};  ///< in the form that a scene has: [[-100, 65 N/m], [50, 156 N/m]]
   Basis basis = Basis::kAssumed;
   std::string source = {};
 };
@@ -35,7 +35,7 @@ struct Tissue {
   TissueClass kind = TissueClass::kSolid;
   bool parcels_joined = false;      ///< two regions of it have no wall between them
   bool is_spared = false;           ///< a planned way keeps clear of it
-  std::string lining;               ///< of a fluid or a gas: a membrane of the table; or empty
+  std::string lining;               ///< for a fluid or a gas: a membrane of the table; or empty
   std::vector<std::string> labels;  ///< patterns of label names
   std::optional<SourcedNumber> stiffness;  ///< [N/m]
   std::optional<SourcedNumber> young;      ///< [Pa]
@@ -45,15 +45,15 @@ struct Tissue {
   std::optional<SourcedNumber> friction;   ///< static; sliding is the same
   std::optional<SourcedNumber> viscosity;  ///< [N s/m]
   std::optional<SourcedNumber> opens_at;   ///< [N]
-  std::optional<SourcedNumber> back;       ///< [N] out of it, where no hole is
-  std::optional<SourcedNumber> reopens;    ///< [N] in a hole that is there
-  // Of a needle in it.
+  std::optional<SourcedNumber> back;       ///< [N] out of it, where there is no hole
+  std::optional<SourcedNumber> reopens;    ///< [N] through an existing hole
+  // For a needle in the tissue.
   std::optional<SourcedNumber> cutting;  ///< [N]
-  std::optional<SourcedNumber> shaft;    ///< [N/m] friction on each length of the shaft that slides
-  std::optional<SourcedNumber> shaft_static;       ///< [N/m] and that sticks; no less than `shaft`
-  std::optional<SourcedTransfer> stiffness_of_ct;  ///< where there is a CT image
+  std::optional<SourcedNumber> shaft;    ///< [N/m] friction per length of the shaft while it slides
+  std::optional<SourcedNumber> shaft_static;  ///< [N/m] the same while it sticks; at least `shaft`
+  std::optional<SourcedTransfer> stiffness_of_ct;  ///< used where there is a CT image
 
-  /// Whether something is felt inside of it.
+  /// Whether the tissue is felt inside it, not only at its wall.
   [[nodiscard]] bool hasContent() const { return viscosity || cutting || shaft; }
   /// A fluid or a gas has no elastic wall.
   [[nodiscard]] bool hasWall() const { return stiffness || young || shear; }
@@ -64,35 +64,36 @@ struct TissueTable {
   SourcedNumber tip_radius;  ///< [m]
   SourcedNumber stiffest;    ///< [N/m]
   std::optional<SourcedNumber>
-      shaft_spring;  ///< [N/m^2] of a shaft that sticks; given if a tissue has `shaft`
+      shaft_spring;  ///< [N/m^2] of a shaft that sticks; required if a tissue has `shaft`
   std::optional<SourcedNumber> shaft_young;  ///< [Pa] of a needle's shaft, a solid rod
-  std::string unknown;                       ///< the tissue of what nothing fits; or empty
+  std::string unknown;                       ///< tissue for labels that fit none; or empty
   std::vector<Tissue> tissues;
 
-  /// The first tissue with a pattern that fits a label's name, or null.
+  /// The first tissue with a pattern that matches a label's name, or null.
   [[nodiscard]] const Tissue* of(const std::string& label) const;
   /// By its own name, or null.
   [[nodiscard]] const Tissue* find(const std::string& name) const;
-  /// Of a tissue that has a wall: measured, derived or assumed, and how it came about.
+  /// For a tissue that has a wall: measured, derived or assumed, with an explanation.
   [[nodiscard]] SourcedNumber wallStiffness(const Tissue& tissue) const;
-  /// What holds a needle's shaft sideways in a tissue that can be cut, on each length of it.
+  /// The sideways support of a needle's shaft by a tissue that can be cut, per length of the shaft.
   struct Lateral {
     SourcedNumber stiffness;  ///< [N/m^2]
     SourcedNumber strength;   ///< [N/m] the load that tears the tissue
   };
-  /// None where the tissue has no `cutting` or no `shaft`, or the table says nothing of the shaft's
+  /// Nothing if the tissue has no `cutting` or no `shaft`, or if the table lacks the shaft's
   /// modulus.
   [[nodiscard]] std::optional<Lateral> lateral(const Tissue& tissue) const;
 
  private:
-  /// [Pa] E of a tissue, or what its wall's stiffness says of it; and the words for it.
+  /// [Pa] Young's modulus of a tissue, given or derived from the wall's stiffness, with its
+  /// explanation.
   [[nodiscard]] SourcedNumber modulus(const Tissue& tissue) const;
   [[nodiscard]] static double poissonOf(const Tissue& tissue);
 };
 
-/// @throws Error (kInput), with file, line and column, for anything but such a table.
+/// @throws Error (kInput), with file, line and column, if the file has another form.
 [[nodiscard]] TissueTable readTissueTable(const std::string& path);
-/// The project's own.
+/// The project's own table.
 [[nodiscard]] TissueTable ownTissueTable();
 
 }  // namespace palpate::tools

@@ -39,7 +39,7 @@ Labels labelsOf(const ImportedScan& scan, const std::string& target) {
                    "give a label that the image holds and --labels takes in", scan.labels.source);
 }
 
-/// Voxels of the target in their box, with a rim of others around.
+/// The target's voxels in their bounding box, with a border of other voxels around.
 class Depths {
  public:
   Depths(const vdb::Image& image, const std::vector<int>& labels) : image_(image) {
@@ -105,9 +105,9 @@ class Depths {
     return i + size_[0] * (j + size_[1] * k);
   }
 
-  /// A distance over the 26 steps to neighbors, in two sweeps: at most a tenth longer than the
-  /// straight one (Borgefors 1986, Distance transformations in digital images), which is enough to
-  /// tell what is deep.
+  /// One of two sweeps of a chamfer distance over the 26 steps to neighbors. The result is at most
+  /// a tenth longer than the straight distance (Borgefors 1986, Distance transformations in digital
+  /// images), which is accurate enough to find the deepest voxel.
   void sweep(bool forward) {
     const int way = forward ? -1 : 1;
     for (std::size_t nk = 1; nk + 1 < size_[2]; ++nk) {

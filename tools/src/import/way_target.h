@@ -1,5 +1,5 @@
 #pragma once
-/// The place in an imported scan that a needle is to reach.
+/// Finds the place in an imported scan that a needle is to reach.
 
 #include <string>
 
@@ -10,11 +10,11 @@ namespace palpate::tools {
 struct WayTarget {
   std::string name;
   std::size_t region = 0;
-  Vec3 place{0.0};  ///< [m] the center of the voxel that is farthest within it, about
+  Vec3 place{0.0};  ///< [m] the center of the voxel that is approximately deepest inside the target
 };
 
 /// `target`: a region's or a label's name, or a label.
-/// @throws Error (kInput) that suggests what the scan has.
+/// @throws Error (kInput) with suggestions from the scan.
 [[nodiscard]] WayTarget wayTarget(const ImportedScan& scan, const std::string& target);
 
 }  // namespace palpate::tools

@@ -1,5 +1,5 @@
 #pragma once
-/// What makes a folder a bundle of `palpate pack`.
+/// Recognizes a folder that is a bundle of `palpate pack`.
 
 #include <string>
 
@@ -17,7 +17,7 @@ inline constexpr const char* kBundleFiles = "files";
 /// Where the grids of a bundle's scene are; empty for any other scene.
 [[nodiscard]] std::string bundleGridsOf(const std::string& scene_file);
 
-/// Wherever a verb takes a scene, the folder of a bundle stands for the scene in it.
+/// Replaces the folder of a bundle by the scene in it, wherever a verb takes a scene.
 void openBundles(AnyOptions& options);
 
 }  // namespace palpate::tools

@@ -24,7 +24,7 @@ Error damaged(const std::string& message, const fs::path& file) {
                     file.string());
 }
 
-/// Its list, checked for its form.
+/// Reads the list of a bundle, and checks its form.
 Json listOf(const fs::path& bundle) {
   const fs::path about = bundle / kBundleAbout;
   std::ifstream in(about, std::ios::binary);

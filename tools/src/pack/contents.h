@@ -1,6 +1,6 @@
 #pragma once
-/// The list of its own files that a bundle carries: what was damaged since, and what is not of it,
-/// is found by that.
+/// The list of its own files that a bundle carries. It shows damaged files, and files that do not
+/// belong to the bundle.
 
 #include <filesystem>
 #include <optional>
@@ -10,17 +10,18 @@
 
 namespace palpate::tools {
 
-/// "fnv1a64:..." of the bytes of a file. @throws Stopped if the run is asked to stop.
+/// "fnv1a64:..." of the bytes of a file. @throws Stopped if the user asks to stop.
 [[nodiscard]] std::string hashOf(const std::filesystem::path& file);
 
-/// Name, bytes and hash of each file below `bundle`, but for its `pack.json`.
+/// Name, size and hash of each file below `bundle`, except its `pack.json`.
 [[nodiscard]] Json contentsOf(const std::filesystem::path& bundle);
 
-/// @throws Error (kInput, pack.damaged) for the first file of the list that is missing or not as it
-/// was packed. The scene may be edited.
+/// @throws Error (kInput, pack.damaged) for the first listed file that is missing or has changed
+/// since it was packed. The scene itself may be edited.
 void checkContents(const std::filesystem::path& bundle);
 
-/// A file or folder below `bundle` that its list does not have, and that replacing it would lose.
+/// A file or folder below `bundle` that is not in its list, and that replacing the bundle would
+/// delete.
 [[nodiscard]] std::optional<std::string> foreignIn(const std::filesystem::path& bundle);
 
 }  // namespace palpate::tools

@@ -1,5 +1,5 @@
 #pragma once
-/// What the user of `palpate pack` asked for.
+/// The options of `palpate pack`.
 
 #include <string>
 #include <utility>
@@ -17,7 +17,7 @@ struct PackOptions {
 template <class... Verbs>
 auto withPack(const std::variant<Verbs...>&) -> std::variant<Verbs..., PackOptions>;
 
-/// Of any verb.
+/// Options of any verb.
 using AnyOptions = decltype(withPack(std::declval<VerbOptions>()));
 
 }  // namespace palpate::tools

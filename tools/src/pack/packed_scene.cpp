@@ -9,7 +9,7 @@
 namespace palpate::tools {
 namespace {
 
-/// A value in the text, and what it becomes.
+/// A value in the text, and its replacement.
 struct Change {
   Mark mark;
   std::string old;
@@ -26,7 +26,7 @@ class Changes {
       if (section.key == "images") {
         for (const Node::Entry& image : section.value.entries) findInImage(image);
       } else if (section.key == "fields" || section.key == "materials") {
-        // Keys are names that the author gave.
+        // Keys here are names that the author gave.
         for (const Node::Entry& entry : section.value.entries) findIn(entry.value);
       } else {
         findIn(section.value);
@@ -63,7 +63,7 @@ class Changes {
   std::vector<Change> list_;
 };
 
-/// How many characters of `line` from `at` on are the value; 0 if it does not end there.
+/// Length of the value in `line` from `at` on; 0 if the value does not end on this line.
 std::size_t lengthOf(const std::string& line, std::size_t at, const Change& change) {
   if (at >= line.size()) return 0;
   if (!change.quoted)
@@ -75,7 +75,7 @@ std::size_t lengthOf(const std::string& line, std::size_t at, const Change& chan
       ++end;
     } else if (line[end] == quote) {
       if (quote == '"' || end + 1 >= line.size() || line[end + 1] != quote) return end + 1 - at;
-      ++end;  // '' is one ' of the text
+      ++end;  // '' stands for a single '
     }
   }
   return 0;
@@ -102,12 +102,12 @@ std::string packedText(const Document& document, const NameInBundle& name) {
   Changes changes(name);
   changes.find(document.root);
   std::vector<Change>& list = changes.list();
-  // From the end on, so that what stands before keeps its place.
+  // From the end on, so that positions before a change stay valid.
   std::sort(list.begin(), list.end(), [](const Change& a, const Change& b) {
     return a.mark.line != b.mark.line ? a.mark.line > b.mark.line : a.mark.column > b.mark.column;
   });
   std::vector<std::string> lines = document.lines;
-  std::map<std::string, std::string, std::greater<>> absolute;  // what is longer comes first
+  std::map<std::string, std::string, std::greater<>> absolute;  // longer names come first
   for (const Change& change : list) {
     std::string& line = lines.at(static_cast<std::size_t>(change.mark.line - 1));
     const auto at = static_cast<std::size_t>(change.mark.column - 1);
@@ -131,7 +131,7 @@ bool isReadByMaterials(const Node& root, const std::string& image) {
   return std::any_of(root.entries.begin(), root.entries.end(), [&](const Node::Entry& section) {
     if (section.key == "images") return false;
     if (section.key != "layers") return findsImage(section.value, image);
-    // Layers name images for their surfaces too, and materials of their own at other keys.
+    // Layers also name images for their surfaces; other keys of a layer may hold materials.
     return std::any_of(
         section.value.items.begin(), section.value.items.end(), [&](const Node& layer) {
           return std::any_of(layer.entries.begin(), layer.entries.end(),

@@ -33,7 +33,7 @@ Animation::Animation(int width, int height) : impl_(std::make_unique<Impl>()) {
       WebPAnimEncoderOptionsInit(&options) != 0 && WebPConfigInit(&impl_->config) != 0;
   if (!is_ready) fail("the library is of another version than its headers");
   options.minimize_size = 1;
-  options.anim_params.loop_count = 0;  // for ever
+  options.anim_params.loop_count = 0;  // endless
   impl_->config.quality = kQuality;
   impl_->config.method = kEffort;
   impl_->encoder.reset(WebPAnimEncoderNew(width, height, &options));

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures one after the other, as an animated WebP. The only place that knows the encoder.
+/// A sequence of pictures as an animated WebP. The only file that uses the encoder.
 
 #include <memory>
 #include <string>
@@ -16,9 +16,9 @@ class Animation {
   Animation(const Animation&) = delete;
   Animation& operator=(const Animation&) = delete;
 
-  /// `milliseconds`: how long it is seen. @throws Error (kOperation).
+  /// `milliseconds`: how long the frame is shown. @throws Error (kOperation).
   void add(const Canvas& frame, int milliseconds);
-  /// The file's bytes; it begins anew at its end, for ever. @throws Error (kOperation).
+  /// The file's bytes; the animation repeats endlessly. @throws Error (kOperation).
   [[nodiscard]] std::string finish();
 
  private:

@@ -26,7 +26,7 @@ std::string axisName(const Sheet& s, const Vec3& direction, int axis) {
 /// Calls `mark(pixels from the low end, text)` at round coordinates.
 template <class Mark>
 void ticks(const Sheet& s, const Vec3& direction, int axis, double low, int pixels, Mark mark) {
-  // Off the world's axes coordinates count from the plane's own point.
+  // On a plane that is not across a world axis, coordinates count from the plane's own point.
   const double origin = axis < 0 ? 0.0 : s.plane.point[axis];
   const double sign = axis < 0 ? 1.0 : direction[axis];
   const double a = (origin + sign * low) / s.unit.meters;

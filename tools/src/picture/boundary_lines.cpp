@@ -7,7 +7,7 @@
 namespace palpate::tools {
 namespace {
 
-/// A small arrow through a one-way port, away from its middle, where hands go.
+/// A small arrow through a one-way port, off its middle, where paths of hands are drawn.
 void oneWay(Sheet& s, const Boundary& line) {
   const std::size_t middle = line.points.size() * 3 / 4;
   if (middle == 0) return;

@@ -1,5 +1,5 @@
 #pragma once
-/// From where a scene in space is looked at.
+/// The viewpoint of a picture of a scene in space.
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,11 @@ namespace palpate::tools {
 
 /// Parallel projection.
 struct Camera {
-  Vec3 center{0.0};  ///< [m] in the middle of the picture
+  Vec3 center{0.0};  ///< [m] at the center of the picture
   Vec3 right{1.0, 0.0, 0.0};
   Vec3 up{0.0, 0.0, 1.0};
-  Vec3 toward{0.0, -1.0, 0.0};  ///< at the viewer
-  double step = 1.0;            ///< [m] a pixel
+  Vec3 toward{0.0, -1.0, 0.0};  ///< towards the viewer
+  double step = 1.0;            ///< [m] size of a pixel
   int width = 0;
   int height = 0;
 
@@ -29,11 +29,11 @@ struct Camera {
   }
 };
 
-/// Turned to look from `toward` (any length but zero, finite), `up` (or, if that is along it, y) as
-/// upright as can be.
+/// A camera that looks from the direction `toward` (of any finite length except zero), with `up` as
+/// upright as possible; if `up` is parallel to `toward`, with y upright.
 [[nodiscard]] inline Camera cameraFrom(const Vec3& toward, const Vec3& up = {0.0, 0.0, 1.0}) {
   Camera camera;
-  // Scaled first: the square of a very long or short vector is none of double precision.
+  // Scaled first, because the square of a very long or short vector leaves the range of doubles.
   const double most = std::max({std::abs(toward.x), std::abs(toward.y), std::abs(toward.z)});
   camera.toward = glm::normalize(toward / most);
   const Vec3 right = glm::cross(up, camera.toward);

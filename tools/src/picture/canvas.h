@@ -1,5 +1,5 @@
 #pragma once
-/// A sheet to draw on, pixels from the top left. The only place that knows the drawing library.
+/// A sheet to draw on, in pixels from the top left. The only file that uses the drawing library.
 
 #include <algorithm>
 #include <cstdint>
@@ -57,7 +57,7 @@ struct TextStyle {
   bool italic = false;
   Align align = Align::kLeft;
   double halo = 0.0;     ///< width of a light rim around the letters
-  bool upright = false;  ///< turned to read from below
+  bool upright = false;  ///< rotated to be read from below
 };
 
 class Canvas {
@@ -74,19 +74,19 @@ class Canvas {
   void disk(const Pixel& center, double radius, const Color& color);
   /// A straight arrow with a filled head at `to`.
   void arrow(const Pixel& from, const Pixel& to, const Stroke& stroke, double head);
-  /// `at` is on the base line.
+  /// `at` is on the baseline.
   void text(const Pixel& at, const std::string& text, const TextStyle& style);
   [[nodiscard]] double textWidth(const std::string& text, const TextStyle& style);
-  /// Everything until unclip() stays within the rectangle.
+  /// Restricts drawing to the rectangle until unclip().
   void clip(double x, double y, double w, double h);
   void unclip();
-  /// Four bytes a pixel: blue, green, red and one that means nothing; valid until the canvas is
-  /// drawn to or gone.
+  /// Four bytes for each pixel: blue, green, red and an unused one. Valid until the canvas is drawn
+  /// to or destroyed.
   struct Bytes {
     const unsigned char* data = nullptr;
     int width = 0;
     int height = 0;
-    int stride = 0;  ///< [bytes] from a row to the next
+    int stride = 0;  ///< [bytes] from one row to the next
   };
   [[nodiscard]] Bytes bytes() const;
   /// The sheet as a PNG file. @throws Error (kOperation).

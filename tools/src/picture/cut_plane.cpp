@@ -33,8 +33,8 @@ int alignedAxis(const Vec3& direction) {
   return -1;
 }
 
-/// Main directions of the points about their mean: eigenvectors of the covariance by Jacobi
-/// rotations, the longest spread first.
+/// Principal directions of the points about their mean: eigenvectors of the covariance by Jacobi
+/// rotations, the largest spread first.
 struct Spread {
   Vec3 mean{0.0};
   std::array<Vec3, 3> direction{};
@@ -105,13 +105,13 @@ CutPlane planeAcross(int axis, double value, const LengthUnit& unit) {
 }
 
 CutPlane planeThrough(const Vec3& point, const Vec3& normal, const LengthUnit& unit) {
-  // Scaled first, as the square of a very long or short vector is none of double precision.
+  // Scaled first, because the square of a very long or short vector leaves the range of doubles.
   const double most = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
   const Vec3 n = glm::normalize(normal / most);
   const int axis = alignedAxis(n);
   if (axis >= 0) {
     CutPlane plane = planeAcross(axis, point[axis], unit);
-    if (glm::dot(plane.normal(), n) < 0.0) {  // from the other side: mirror left and right
+    if (glm::dot(plane.normal(), n) < 0.0) {  // seen from the other side: mirror left and right
       plane.right = -plane.right;
     }
     return plane;
@@ -129,7 +129,7 @@ CutPlane planeThrough(const Vec3& point, const Vec3& normal, const LengthUnit& u
 }
 
 CutPlane planeAlong(const Track& track, const LengthUnit& unit) {
-  constexpr double kFlat = 1e-3;  // share of the longest spread below which there is none
+  constexpr double kFlat = 1e-3;  // share of the longest spread below which a spread counts as none
   const Spread s = spreadOf(track);
   if (!(s.deviation[0] > 0.0)) return planeAcross(1, s.mean.y, unit);
   Vec3 normal{0.0};
@@ -142,9 +142,9 @@ CutPlane planeAlong(const Track& track, const LengthUnit& unit) {
       if (best < 0 || std::abs(along[axis]) < std::abs(along[best]) - 1e-9) best = axis;
     }
     normal = axisVector(best) - along[best] * along;
-    if (best == 1) normal = -normal;  // across y one looks along y, with x to the right
+    if (best == 1) normal = -normal;  // for a cut across y one looks along y, with x to the right
   }
-  // Of the two sides, the one that the standard views look from.
+  // Choose the side that the standard views look from.
   const int main_axis =
       std::abs(normal.y) >= std::abs(normal.x) && std::abs(normal.y) >= std::abs(normal.z) ? 1
       : std::abs(normal.x) >= std::abs(normal.z)                                           ? 0

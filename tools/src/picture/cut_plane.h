@@ -1,5 +1,5 @@
 #pragma once
-/// The plane a picture is cut along, with a right and an up on it.
+/// The plane along which a picture is cut, with its right and up directions.
 
 #include <string>
 
@@ -9,13 +9,13 @@
 
 namespace palpate::tools {
 
-/// What lies on the side that `normal` points to, the viewer's, is cut away.
+/// Everything on the side that `normal` points to, that of the viewer, is cut away.
 struct CutPlane {
   Vec3 point{0.0};            ///< [m]
   Vec3 right{1.0, 0.0, 0.0};  ///< unit
   Vec3 up{0.0, 0.0, 1.0};     ///< unit; right x up points at the viewer
   std::string name;           ///< "at y = 12 mm"
-  int right_axis = -1;        ///< world axis that `right` is, or -1
+  int right_axis = -1;        ///< world axis that `right` is parallel to, or -1
   int up_axis = -1;
 
   [[nodiscard]] Vec3 normal() const { return glm::cross(right, up); }
@@ -24,14 +24,15 @@ struct CutPlane {
   [[nodiscard]] double v(const Vec3& p) const { return glm::dot(p - point, up); }
 };
 
-/// Across world axis 0, 1 or 2 at `value` [m].
+/// Perpendicular to world axis 0, 1 or 2, at `value` [m].
 [[nodiscard]] CutPlane planeAcross(int axis, double value, const LengthUnit& unit);
 
-/// Through `point`, across `normal` (any length but zero), up as near to z (else y) as can be.
+/// Through `point`, perpendicular to `normal` (of any length except zero), with up as near to z
+/// (else y) as possible.
 [[nodiscard]] CutPlane planeThrough(const Vec3& point, const Vec3& normal, const LengthUnit& unit);
 
-/// The plane that a hand's path lies in, or lies in best; straight paths leave a choice, which goes
-/// to the plane that is most nearly across y, then x, then z.
+/// The plane that a hand's path lies in, or that fits it best. Straight paths lie in many planes;
+/// then the plane most nearly across y is chosen, else across x, then z.
 [[nodiscard]] CutPlane planeAlong(const Track& track, const LengthUnit& unit);
 
 /// "x=12" (scene's unit), of `option`. @throws Error (kUsage).

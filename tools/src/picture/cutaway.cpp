@@ -14,19 +14,20 @@ namespace {
 
 constexpr double kYaw = 35.0 * std::numbers::pi / 180.0;
 constexpr double kPitch = 24.0 * std::numbers::pi / 180.0;
-constexpr int kTrial = 64;  // [pixels] of the first look
+constexpr int kTrial = 64;  // [pixels] size of the first, coarse picture
 constexpr double kEdgeShade = 0.4;
-constexpr int kBlock = 8;                  // [pixels] whose rays share the way through free space
+constexpr int kBlock = 8;  // [pixels] side of a block whose rays share the march through free space
 constexpr int kBand = 32 * kBlock;         // [rows] that are drawn together ...
-constexpr int kHeld = kBand + 2 * kBlock;  // ... and looked at, with their neighbors
-constexpr double kContrast = 0.1;          // between neighbors; above it a pixel gets finer rays
+constexpr int kHeld = kBand + 2 * kBlock;  // ... and traced, with their neighbors
+// Difference of neighboring pixels above which a pixel gets finer rays
+constexpr double kContrast = 0.1;
 
 double differenceOf(const Color& a, const Color& b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }
 
-/// Rays through the pixels' centers, and finer ones where that is not enough. Band by band, so that
-/// only the picture itself takes memory that grows with its height.
+/// Casts rays through the pixels' centers, and finer ones where needed. It works band by band, so
+/// that only the picture itself takes memory that grows with the height.
 class Drawing {
  public:
   Drawing(const SpaceScene& space, const Camera& camera)
@@ -70,7 +71,7 @@ class Drawing {
                      static_cast<std::size_t>((y - first_) / kBlock)];
   }
 
-  /// A row of blocks from `top` on, and no pixel from `end` on.
+  /// Traces a row of blocks from `top` on, but no pixel from `end` on.
   void blocks(int top, int end, RayMarch& march) {
     const double radius = 0.5 * kBlock * std::numbers::sqrt2;
     for (int left = 0; left < width_; left += kBlock) {
@@ -114,7 +115,7 @@ class Drawing {
   }
 
   int width_, height_, columns_;
-  int first_ = 0;  ///< row that hits_ begins with, a multiple of kBlock
+  int first_ = 0;  ///< first row in hits_, a multiple of kBlock
   std::vector<Hit> hits_;
   std::vector<double> free_;
   std::deque<RayMarch> marches_;
@@ -132,7 +133,7 @@ Camera cameraOn(const CutPlane& plane) {
 void fitCamera(Camera& camera, const SpaceScene& space, const std::vector<Vec3>& points, int width,
                int height) {
   camera.center = space.box.center();
-  // A first, coarse look at everything shows how much of the picture is empty.
+  // First, a coarse picture of everything shows how much of it is empty.
   camera.width = kTrial;
   camera.height = kTrial;
   camera.step = glm::length(space.box.size()) / kTrial;

@@ -12,8 +12,9 @@ namespace {
 constexpr double kWidth = 1.3;   // [pixels]
 constexpr double kFaint = 0.4;   // ink of a line ...
 constexpr double kDark = 0.8;    // ... and of every fifth
-constexpr double kFewest = 3.0;  // pixels from line to line
-constexpr double kFlat = 0.05;   // slope below which a plane runs along a surface, and has no lines
+constexpr double kFewest = 3.0;  // least number of pixels from line to line
+// Slope below which the plane is parallel to the surface, so that no lines are drawn
+constexpr double kFlat = 0.05;
 
 }  // namespace
 
@@ -33,8 +34,8 @@ double DistanceLines::inkAt(const Vec3& p, const Vec3& normal, double pixel) con
     if (!region.field || region.field->bounds().distanceTo(p) >= distance) continue;
     const FieldSample sample = region.field->sample(p);
     const double slope = glm::length(sample.gradient);
-    // Beyond the band of a grid only a bound of the distance is known, which may be the least of
-    // all.
+    // Beyond the band of a grid only a bound of the distance is known, and this bound may still be
+    // the least of all regions.
     const double value = std::abs(sample.value) / (slope > 0.0 ? slope : 1.0);
     if (value >= distance) continue;
     distance = value;

@@ -7,7 +7,7 @@
 namespace palpate::tools {
 namespace {
 
-constexpr double kLongest = 1.5;  // of the arrows' spacing
+constexpr double kLongest = 1.5;  // share of the arrows' spacing
 
 }  // namespace
 
@@ -22,8 +22,8 @@ void drawFelt(Sheet& s, const std::function<Pixel(const Vec3&)>& at, double step
   for (const RestForce& f : s.felt) most = std::max(most, glm::length(f.force));
   if (!(most > 0.0)) return;
   const double spacing = s.felt_spacing / step;
-  // Points are drawn for what is too short for an arrow, so that no force is not taken for a small
-  // one.
+  // A dot marks every force, also one too short for an arrow, so that a small force is not mistaken
+  // for none.
   const double dot = std::min(s.px(2.2), 0.12 * spacing);
   for (const RestForce& f : s.felt) {
     const Pixel from = at(f.at);

@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kCell = 4;          // [pixels]
 constexpr double kMargin = 5.0;   // [pixels] around a label
-constexpr double kCrowded = 160;  // [pixels] that a label would rather go to stand on empty space
-constexpr double kTooNear = 26;   // [pixels] a leader is never shorter
+constexpr double kCrowded = 160;  // [pixels] how far a label may move away to find empty space
+constexpr double kTooNear = 26;   // [pixels] least length of a leader
 
 int cells(double pixels) { return static_cast<int>(std::ceil((pixels + 2.0 * kMargin) / kCell)); }
 
@@ -140,7 +140,7 @@ std::optional<Pixel> LabelPlacer::placeNear(const Pixel& anchor, double width, d
   for (int y = 0; y + h <= rows_; ++y) {
     for (int x = 0; x + w <= columns_; ++x) {
       if (sum(taken, x, y, w, h) > 0) continue;
-      // From the anchor to the nearest edge of the label.
+      // Distance from the anchor to the nearest edge of the label.
       const double dx = std::max({x * kCell - anchor.x, anchor.x - (x + w) * kCell, 0.0});
       const double dy = std::max({y * kCell - anchor.y, anchor.y - (y + h) * kCell, 0.0});
       double cost = std::hypot(dx, dy);

@@ -1,5 +1,5 @@
 #pragma once
-/// Finds room for names on a section.
+/// Finds free space for names on a section.
 
 #include <optional>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace palpate::tools {
 
-/// Works on cells of a few pixels. Whatever is placed or marked is kept free of later labels.
+/// Works on cells of a few pixels. Placed labels and marked lines are kept free of later labels.
 class LabelPlacer {
  public:
   explicit LabelPlacer(const Section& section);
@@ -16,14 +16,15 @@ class LabelPlacer {
   /// Keeps labels off a drawn line.
   void markBusy(const std::vector<Pixel>& line);
 
-  /// Where a label of this size lies wholly in `region`, as far from its walls as can be; its
-  /// middle.
+  /// The middle of a label of this size that lies wholly in `region`, as far from its walls as
+  /// possible.
   [[nodiscard]] std::optional<Pixel> placeInside(RegionId region, double width, double height);
 
-  /// Room for a label near `anchor`, on empty space if there is any near; its middle.
+  /// The middle of a label near `anchor`, on empty space if there is some nearby.
   [[nodiscard]] std::optional<Pixel> placeNear(const Pixel& anchor, double width, double height);
 
-  /// The innermost point of a region in the section; none if it is not there.
+  /// The innermost point of a region in the section; nothing if the section does not show the
+  /// region.
   [[nodiscard]] std::optional<Pixel> innermost(RegionId region) const;
 
  private:
@@ -33,7 +34,7 @@ class LabelPlacer {
   }
   void measureDepth();
   void take(int x, int y, int w, int h);
-  /// Sums over rectangles of cells, of what `counts` says.
+  /// Sums `counts` over rectangles of cells.
   template <class Counts>
   [[nodiscard]] std::vector<int> sums(Counts counts) const;
   [[nodiscard]] int sum(const std::vector<int>& table, int x, int y, int w, int h) const;
@@ -41,7 +42,7 @@ class LabelPlacer {
   int columns_;
   int rows_;
   std::vector<RegionId> region_;
-  std::vector<float> depth_;  ///< [cells] to another region or the edge
+  std::vector<float> depth_;  ///< [cells] distance to another region or to the edge
   std::vector<bool> busy_;
 };
 

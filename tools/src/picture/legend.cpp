@@ -26,7 +26,7 @@ std::string feelOf(const Sheet& s, const Region& region) {
   return text;
 }
 
-/// `text`, or as much of its beginning as is no wider than `room`.
+/// `text`, or its longest beginning that is no wider than `room`.
 std::string shortened(Sheet& s, std::string text, const TextStyle& style, double room) {
   if (s.canvas.textWidth(text, style) <= room) return text;
   const auto is_middle = [](char byte) {
@@ -34,7 +34,7 @@ std::string shortened(Sheet& s, std::string text, const TextStyle& style, double
   };
   while (!text.empty() && s.canvas.textWidth(text + "...", style) > room) {
     while (!text.empty() && is_middle(text.back()))
-      text.pop_back();  // of a character of several bytes
+      text.pop_back();  // removes all bytes of one character
     if (!text.empty()) text.pop_back();
   }
   return text + "...";

@@ -53,7 +53,7 @@ void callout(Sheet& s, LabelPlacer& placer, const Pixel& anchor, const std::stri
   s.canvas.text({middle.x, middle.y + 0.36 * style.size}, text, style);
 }
 
-/// Every port in view is named once: where the hand passed nearest, else on its longest line.
+/// Names each visible port once: at the place nearest to the hand's path, else on its longest line.
 void ports(Sheet& s, LabelPlacer& placer) {
   for (std::size_t i = 0; i < s.scene.ports().size(); ++i) {
     const Port& port = s.scene.ports()[i];

@@ -9,7 +9,7 @@ namespace palpate::tools {
 namespace {
 
 constexpr std::size_t kMostSampled = 200'000;
-/// Share of the scan's gray values that shows through outside all layers.
+/// Weight of the scan's gray values outside all layers.
 constexpr double kOutsideGray = 0.5;
 
 }  // namespace
@@ -43,7 +43,7 @@ Paint::Paint(std::shared_ptr<const vdb::Image> image, const Scene& scene,
 Color Paint::at(RegionId region, const Vec3& p) const {
   const Color base = of(region);
   if (!image_) return base;
-  // Image::interpolate inverts the affine every time; here are a million pixels.
+  // Image::interpolate inverts the affine for each call, which is too slow for a million pixels.
   const Vec3 index = to_index_ * (p - image_->origin);
   int lower[3];
   double share[3];

@@ -1,5 +1,5 @@
 #pragma once
-/// The color of a point of a cut face: its region's, darkened and lightened by a scan's gray
+/// The color of a point on a cut face: that of its region, made darker or lighter by a scan's gray
 /// values.
 
 #include <map>
@@ -15,13 +15,13 @@ namespace palpate::tools {
 
 class Paint {
  public:
-  /// Without an image: plain colors. Gray runs from the 1st to the 99th percentile of the voxels.
-  /// `colors` of regions, by their names, go before those of the palette.
+  /// Without an image: plain colors. Gray ranges from the 1st to the 99th percentile of the voxels.
+  /// `colors`, by the names of regions, take precedence over the palette.
   Paint(std::shared_ptr<const vdb::Image> image, const Scene& scene,
         const std::map<std::string, vdb::LabelColor>& colors);
 
   [[nodiscard]] Color at(RegionId region, const Vec3& p) const;
-  /// Without gray values.
+  /// The region's color without gray values.
   [[nodiscard]] Color of(RegionId region) const { return colors_.at(region); }
   /// Whether there is a gray value at `p` [m].
   [[nodiscard]] bool isInImage(const Vec3& p) const;

@@ -11,7 +11,8 @@ Color regionColor(RegionId region) {
                                                             0xC9B99A, 0xB4BFCC, 0xD9B38C, 0xBFD08F};
   if (region == kOutside) return kPaper;
   const Color color = rgb(kColors[(region - 1U) % kColors.size()]);
-  // More regions than colors: the next ones darker, then lighter, and so on.
+  // With more regions than colors: the second twelve are darker, the third lighter, and so on in
+  // turn.
   const std::size_t round = (region - 1U) / kColors.size() % 3U;
   return round == 0 ? color : round == 1 ? scaled(color, 0.8) : mixed(color, rgb(0xFFFFFF), 0.55);
 }

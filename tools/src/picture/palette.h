@@ -1,5 +1,5 @@
 #pragma once
-/// The pictures' colors.
+/// The colors of pictures.
 
 #include "palpate/interior/partition.h"
 #include "picture/canvas.h"
@@ -16,7 +16,7 @@ inline constexpr Color kHipInk = rgb(0xC96A12);
 inline constexpr Color kProxyInk = rgb(0x1F4FB0);
 inline constexpr Color kForceInk = rgb(0xC3213B);
 
-/// Muted, told apart by hue; they repeat after twelve.
+/// Muted colors that differ in hue; they repeat after twelve.
 [[nodiscard]] Color regionColor(RegionId region);
 
 [[nodiscard]] Color mixed(const Color& a, const Color& b, double share_of_b);

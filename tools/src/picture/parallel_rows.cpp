@@ -28,7 +28,7 @@ void parallelRows(int rows, const Progress& progress, const char* what,
     }
   } catch (...) {
     stopped = true;
-    throw;  // the helpers are joined on the way out
+    throw;  // the helper threads are joined while the stack unwinds
   }
 }
 

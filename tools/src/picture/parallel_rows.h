@@ -1,5 +1,5 @@
 #pragma once
-/// Rows of a picture, on all cores.
+/// Computes the rows of a picture on all cores.
 
 #include <functional>
 
@@ -7,8 +7,9 @@
 
 namespace palpate::tools {
 
-/// Calls `row(y, worker)` once for every y in [0, rows); `worker` counts from 0 to workerCount() -
-/// 1 and never runs two rows at once. Reports on the calling thread. `row` must not throw.
+/// Calls `row(y, worker)` once for every y in [0, rows); `worker` is from 0 to workerCount() - 1,
+/// and no worker runs two rows at once. Reports progress on the calling thread. `row` must not
+/// throw.
 void parallelRows(int rows, const Progress& progress, const char* what,
                   const std::function<void(int y, std::size_t worker)>& row);
 

@@ -12,11 +12,11 @@
 namespace palpate::tools {
 namespace {
 
-/// Room for a scene without a bounded layer and without a track.
+/// Size of the view of a scene without a bounded layer and without a track.
 constexpr double kFallbackSize = 0.2;  // [m]
-/// A hand that moves within less than this share of the scene is looked at closely ...
+/// If a hand moves within less than this share of the scene, the view is a close-up ...
 constexpr double kSmallTrack = 1.0 / 8.0;
-/// ... with this many times its own extent in view.
+/// ... that shows this many times the hand's own extent.
 constexpr double kCloseView = 6.0;
 
 Box3 contentBox(const Scene& scene, const Track& track) {
@@ -27,7 +27,7 @@ Box3 contentBox(const Scene& scene, const Track& track) {
   return box.grownBy(std::max(0.04 * std::max({size.x, size.y, size.z}), 1e-6));
 }
 
-/// The view that shows `box` as large as fits.
+/// The view that shows `box` as large as possible.
 View viewOf(const CutPlane& plane, const Box3& box, int width, int height) {
   double lo_u = kInfinity, hi_u = -kInfinity, lo_v = kInfinity, hi_v = -kInfinity;
   for (int corner = 0; corner < 8; ++corner) {
@@ -57,7 +57,7 @@ CutPlane choosePlane(const Sheet& s, const Box3& box) {
   return planeAcross(1, (bounds.isEmpty() ? box : bounds).center().y, s.unit);
 }
 
-/// All, or if the hand moved in a small part only, that part.
+/// The box to show: all, or, if the hand moved only in a small part, that part.
 Box3 closeBox(Sheet& s, const Box3& all) {
   if (s.options.track.points.empty()) return all;
   const Box3 track = s.options.track.bounds();
@@ -101,7 +101,7 @@ void drawPanel(Sheet& s) {
   drawNames(s);
 }
 
-/// The view in space; returns where it ends.
+/// Draws the view in space; returns where it ends.
 double drawInset(Sheet& s, const Box3& box, Console& console) {
   const double x = s.options.width - s.side;
   const double y = s.top;
@@ -137,7 +137,7 @@ double drawInset(Sheet& s, const Box3& box, Console& console) {
   return y + height;
 }
 
-/// A mask has two values, and no gray ones.
+/// A mask has only two values, not gray ones.
 bool isMask(const vdb::Image& image) {
   std::array<float, 2> seen{};
   std::size_t count = 0;

@@ -23,20 +23,22 @@ struct PictureOptions {
   int height = 1000;                        ///< [pixels]
   Track track;                              ///< may be empty
   std::shared_ptr<const vdb::Image> image;  ///< gray values; may be null
-  std::map<std::string, vdb::LabelColor> colors = {};  ///< of layers that have one of their own
+  /// For layers that have a color of their own
+  std::map<std::string, vdb::LabelColor> colors = {};
   bool anatomical = false;    ///< x, y, z run to the right, the front and up
-  double line_spacing = 0.0;  ///< [m] of the lines of equal distance; 0: none
-  int forces = 0;             ///< arrows of restForces() along the longer side; 0: none
+  double line_spacing = 0.0;  ///< [m] spacing of the lines of equal distance; 0: none
+  int forces = 0;             ///< number of restForces() arrows along the longer side; 0: none
 };
 
-/// The gray values to show: of the scene's image called `wanted`, of the file `wanted`, or if it is
-/// empty of the scene's first image without names; null if there is none. @throws Error (kInput).
+/// The image with the gray values to show: the scene's image called `wanted`, else the file
+/// `wanted`; if `wanted` is empty, the scene's first image without label names; null if there is
+/// none. @throws Error (kInput).
 [[nodiscard]] std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
                                                              const std::string& wanted);
 
 struct Picture {
   std::string png;  ///< the file's bytes
-  CutPlane plane;   ///< that was cut along
+  CutPlane plane;   ///< the plane of the cut
 };
 
 /// @throws Error: kOperation, kCancelled.

@@ -10,15 +10,16 @@ namespace palpate::tools {
 namespace {
 
 constexpr double kAmbient = 0.44;
-constexpr double kSky = 0.12;  // of the light: from all of the upper side
-constexpr double kWrap =
-    0.25;  // of the lamp's light gets round the edge of the shade: it is not a point
+constexpr double kSky = 0.12;   // share of the light: from all of the upper side
+constexpr double kWrap = 0.25;  // share of the lamp's light that gets around the edge of a shade,
+                                // because the lamp is not a point
 constexpr int kMostSteps = 4000;
-constexpr int kMostFree = 500;  // steps of rays together: what creeps along a surface gains little
-constexpr double kFlat = 1e-9;  // a ray that runs along the cut
-constexpr double kGone = 0.01;  // share of light behind which nothing is seen
+// Most steps of rays together; rays that creep along a surface gain little from more
+constexpr int kMostFree = 500;
+constexpr double kFlat = 1e-9;  // below this a ray runs along the cut
+constexpr double kGone = 0.01;  // share of light below which nothing behind is seen
 
-/// The part of a ray within a box, as distances along it.
+/// The part of a ray within a box, as two distances along it.
 std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& origin,
                                                 const Vec3& way) {
   double enter = -kInfinity;
@@ -37,7 +38,7 @@ std::optional<std::pair<double, double>> within(const Box3& box, const Vec3& ori
   return std::pair{enter, leave};
 }
 
-/// Colors over one another, from the front to the back.
+/// Blends colors over one another, from front to back.
 struct Layers {
   Color sum{0.0, 0.0, 0.0, 1.0};
   double through = 1.0;
@@ -76,7 +77,7 @@ double RayMarch::probe(const Vec3& p, Signs& out) const {
   const auto leaves = space_.scene.partition().leaves();
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     const double away = bounds_[i].distanceTo(p);
-    if (away > 0.0) {  // outside a leaf's box it is not worth a look
+    if (away > 0.0) {  // no need to evaluate a leaf outside its box
       out.set(static_cast<LeafId>(i), false);
       safe = std::min(safe, away);
       continue;
@@ -133,7 +134,7 @@ double RayMarch::freeWay(double x, double y, double radius) {
     const bool is_known = way > 0.0 && *here_ == *there_;
     if (!is_known && space_.scene.partition().regionOf(*there_) != kOutside) return 0.0;
     std::swap(here_, there_);
-    // The ball of `safe` around the point holds the rays' next stretch.
+    // The rays' next step must lie within the ball of radius `safe` around the point.
     if (!(safe > 1.5 * around)) break;
     way += std::isfinite(safe) ? safe - around : most;
   }
@@ -147,7 +148,7 @@ std::optional<RayMarch::Stretch> RayMarch::stretchOf(const Vec3& origin) const {
   if (space_.plane) {
     const double facing = glm::dot(way_, space_.plane->normal());
     const double height = glm::dot(origin - space_.plane->point, space_.plane->normal());
-    if (facing < -kFlat) {  // into what is kept
+    if (facing < -kFlat) {  // towards the side that is kept
       out.cut = -height / facing;
       out.begin = std::max(out.begin, out.cut);
     } else if (facing > kFlat) {
@@ -216,7 +217,7 @@ Hit RayMarch::march(const Vec3& origin, Stretch way, double free) {
       hit.through = 0.0;
       return hit;
     }
-    // The box cuts an endless layer.
+    // The box cuts an unbounded layer.
     meet({scaled(color, shadeOf(-way_, camera_)), opacityOf(region), 2 * region + 1});
   }
   double before = t;

@@ -1,4 +1,4 @@
-// RayMarch: what the surfaces are that a ray comes to.
+// RayMarch: identifies the surfaces that a ray meets.
 
 #include <algorithm>
 #include <bit>
@@ -12,10 +12,12 @@ namespace palpate::tools {
 namespace {
 
 constexpr int kHalvings = 12;
-constexpr double kSheetInk = 0.25;  // share of ink in what belongs to no region
+// Share of ink in the color of surfaces that belong to no region
+constexpr double kSheetInk = 0.25;
 constexpr int kFirstSheet =
-    -2;  // part of a hit on the first sheet; those of the others go down from it
-constexpr int kFirstSlice = kFirstSheet - static_cast<int>(kMostSheets);  // as of sheets
+    -2;  // `part` of a hit on the first sheet; further sheets count down from it
+// Slices count down likewise
+constexpr int kFirstSlice = kFirstSheet - static_cast<int>(kMostSheets);
 constexpr int kMostRegions = 65536;
 
 }  // namespace
@@ -97,7 +99,7 @@ std::optional<RayMarch::Surface> RayMarch::sheet(const Vec3& origin, double befo
   return {};
 }
 
-/// Of the sheet at `p`: of the leaf whose surface is nearest there.
+/// Normal of the sheet at `p`: that of the leaf whose surface is nearest there.
 Vec3 RayMarch::sheetNormal(std::size_t index, const Vec3& p, const Vec3& fallback) const {
   double nearest = kInfinity;
   Vec3 normal = fallback;

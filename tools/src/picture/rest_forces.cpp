@@ -13,21 +13,22 @@
 namespace palpate::tools {
 namespace {
 
-constexpr int kMostWays = 64;     // surfaces left one after the other
-constexpr double kBeyond = 1e-6;  // [m] the hand starts so far outside
-constexpr double kStride = 2e-4;  // [m] a tick, on the way in
+constexpr int kMostWays = 64;     // most surfaces that are left one after another
+constexpr double kBeyond = 1e-6;  // [m] the hand starts this far outside
+constexpr double kStride = 2e-4;  // [m] per tick, on the way in
 constexpr int kFewestStrides = 16;
 constexpr int kMostStrides = 400;
-constexpr int kMostRest = 200;     // [ticks] in which a hand comes to rest
-constexpr double kStill = 1e-6;    // [N] what the force then changes by from tick to tick
+constexpr int kMostRest = 200;     // [ticks] in which a hand must come to rest
+constexpr double kStill = 1e-6;    // [N] largest change of the force per tick at rest
 constexpr double kNoForce = 1e-6;  // [N]
-constexpr int kLooks = 200;  // along each way out where the fields do not say which is the nearest
+// Number of steps along each direction, where the fields do not tell the nearest way out
+constexpr int kLooks = 200;
 
 struct Extent {
   double lo_u = kInfinity, hi_u = -kInfinity, lo_v = kInfinity, hi_v = -kInfinity;
 };
 
-/// Of the box, seen along the plane's normal.
+/// The extent of the box, seen along the plane's normal.
 Extent extentOf(const CutPlane& plane, const Box3& box) {
   Extent e;
   for (int corner = 0; corner < 8; ++corner) {
@@ -43,7 +44,7 @@ Extent extentOf(const CutPlane& plane, const Box3& box) {
   return e;
 }
 
-/// Finds where outside a hand begins.
+/// Finds the place outside where a hand begins.
 class WayOut {
  public:
   WayOut(const Scene& scene, const Box3& box)
@@ -62,7 +63,7 @@ class WayOut {
     scene_.partition().signsAt(p, signs_);
     return scene_.partition().regionOf(signs_) == kOutside;
   }
-  /// Out of the layer that holds the point deepest, and so on.
+  /// Moves out of the layer in which the point is deepest, and repeats.
   std::optional<Vec3> byFields(const Vec3& p) {
     Vec3 q = p;
     for (int i = 0; i < kMostWays; ++i) {
@@ -85,7 +86,7 @@ class WayOut {
     }
     return {};
   }
-  /// The nearest of 26 ways.
+  /// The nearest exit along 26 directions.
   std::optional<Vec3> byLooking(const Vec3& p) {
     for (int look = 1; look <= kLooks; ++look) {
       const double way = longest_ * look / kLooks;
@@ -146,7 +147,7 @@ std::vector<RestForce> restForces(const Scene& scene, const CutPlane& plane, con
     std::unique_ptr<HapticRenderer> renderer;
     WayOut way;
   };
-  // The scene outlives the renderers, which are gone at the end of this function.
+  // A pointer without ownership: the scene outlives the renderers, which end with this function.
   const ScenePtr borrowed(ScenePtr(), &scene);
   std::vector<Worker> workers;
   for (std::size_t i = 0; i < workerCount(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-/// What a hand would feel that rests on a plane: a picture's field of forces.
+/// The force on a hand that rests at points of a plane: the field of forces in a picture.
 
 #include <vector>
 
@@ -13,15 +13,15 @@ struct RestForce {
   Vec3 force{0.0, 0.0, 0.0};  ///< [N] on it
 };
 
-/// At the middles of `count` squares along the longer side of the part of `plane` that lies within
-/// `box`, and as many as fit along the other: the force, where there is any, on a hand that was led
-/// there from the nearest place outside, straight, and that has come to rest. By the renderer that
-/// the scene asks for. On all cores.
+/// The part of `plane` within `box` is divided into squares: `count` along its longer side, and as
+/// many as fit along the other. For the middle of each square: the force, if any, on a hand that
+/// was led there straight from the nearest place outside and has come to rest. Uses the scene's
+/// renderer, and all cores.
 [[nodiscard]] std::vector<RestForce> restForces(const Scene& scene, const CutPlane& plane,
                                                 const Box3& box, int count,
                                                 const Progress& progress);
 
-/// [m] The side of those squares.
+/// [m] Side length of those squares.
 [[nodiscard]] double restSpacing(const CutPlane& plane, const Box3& box, int count);
 
 }  // namespace palpate::tools

@@ -10,21 +10,21 @@
 namespace palpate::tools {
 namespace {
 
-constexpr int kHalvings = 10;  // of a pixel: to a thousandth of it
+constexpr int kHalvings = 10;  // bisections of a pixel: to a thousandth of it
 
 std::uint64_t cellOf(const Scene& scene, const Signs& signs) {
   return scene.partition().regionOf(signs) | sheetSides(scene, signs).inner << 16U;
 }
 
-/// True if a sheet lies between two cells of one region, the second of which is beyond the line by
-/// no more than rounding.
+/// True if a sheet lies between two cells of one region; the second cell is beyond the line only by
+/// rounding.
 bool sheetBetween(const Scene& scene, const Signs& here, const Signs& there) {
   const SheetSides beyond = sheetSides(scene, there);
   return ((sheetSides(scene, here).inner ^ beyond.inner) & beyond.extent) != 0;
 }
 
-/// Finds the lines by looking at every square of four pixel centers: each side whose ends are in
-/// different regions is crossed once, at a point found by halving.
+/// Finds the lines by examining every square of four pixel centers: each side whose ends are in
+/// different regions is crossed once, at a point found by bisection.
 class Tracer {
  public:
   Tracer(const Scene& scene, const View& view, const Section& section)
@@ -101,7 +101,7 @@ class Tracer {
       pieces_.push_back({met[0], met[1]});
       return;
     }
-    // Three regions or more meet: their lines run together in the middle.
+    // Three or more regions meet: their lines end in the middle of the square.
     Pixel middle;
     for (std::size_t i = 0; i < count; ++i) {
       middle.x += crossings_[met[i]].at.x / static_cast<double>(count);
@@ -195,14 +195,14 @@ Boundary classify(const Scene& scene, const Signs& here, const Signs& there) {
     const auto leaf = static_cast<LeafId>(i);
     if (here.inside(leaf) != there.inside(leaf)) crossed.push_back(leaf);
   }
-  PassedPorts all;  // a port that waits for others is shown as a port all the same
+  PassedPorts all;  // a port that requires others first is still shown as a port
   for (const Port& port : scene.ports()) {
     for (const PassedBefore& before : port.after) {
       const auto slot = static_cast<std::size_t>(scene.ports()[before.port].slot);
       while (all.times(slot) < before.times) all.pass(slot, true, true);
     }
   }
-  const Vec3 anywhere(0.0);  // an opening force that varies is one all the same
+  const Vec3 anywhere(0.0);  // for a varying opening force, its value anywhere will do
   const Facet inward = scene.passages().facet(partition, line.a, *second, crossed, all, anywhere);
   const Facet outward = scene.passages().facet(partition, line.b, *first, crossed, all, anywhere);
   const auto passable = [](const Facet& f) { return f.kind == Facet::Kind::kOpen || f.opens; };

@@ -1,6 +1,6 @@
 #pragma once
-/// A flat cut through a scene: which region each pixel is in, and the lines between regions with
-/// what they are: walls, absent walls, ports.
+/// A flat cut through a scene: the region of each pixel, and the kinds of lines between regions:
+/// walls, absent walls, ports.
 
 #include <vector>
 
@@ -15,16 +15,16 @@ namespace palpate::tools {
 /// The part of a plane that a panel of `width` x `height` pixels shows.
 struct View {
   CutPlane plane;
-  double left = 0.0;  ///< [m] u of the left edge
-  double top = 0.0;   ///< [m] v of the upper edge
-  double step = 1.0;  ///< [m] a pixel
+  double left = 0.0;  ///< [m] coordinate u of the left edge
+  double top = 0.0;   ///< [m] coordinate v of the upper edge
+  double step = 1.0;  ///< [m] size of a pixel
   int width = 0;
   int height = 0;
 
   [[nodiscard]] Vec3 world(double x, double y) const {
     return plane.at(left + x * step, top - y * step);
   }
-  /// Where `p`, projected onto the plane, is in the panel.
+  /// Position of `p` in the panel, after projection onto the plane.
   [[nodiscard]] Pixel pixel(const Vec3& p) const {
     return {(plane.u(p) - left) / step, (top - plane.v(p)) / step};
   }
@@ -36,9 +36,9 @@ struct Boundary {
     kWall,
     kAbsent,
     kPort,     ///< open
-    kPressed,  ///< a port that opens when it is pressed
+    kPressed,  ///< a port that opens when pressed
     kSheet,    ///< a wall within one region
-    kNothing,  ///< where a sheet's surface goes on beyond the sheet
+    kNothing,  ///< the continuation of a sheet's surface beyond the sheet
   };
   RegionId a = kOutside;
   RegionId b = kOutside;
@@ -57,8 +57,8 @@ struct Boundary {
 struct Section {
   int width = 0;
   int height = 0;
-  /// Of the pixels' centers: the region, and above it one bit for each sheet, set on its inner
-  /// side.
+  /// For each pixel's center: the region in the low bits, and above it one bit for each sheet, set
+  /// on the sheet's inner side.
   std::vector<std::uint64_t> cells;
   std::vector<Boundary> boundaries;
 
@@ -73,11 +73,11 @@ struct Section {
 
 [[nodiscard]] Section cutSection(const Scene& scene, const View& view, const Progress& progress);
 
-/// More sheets than these are not drawn.
+/// Further sheets are not drawn.
 inline constexpr std::size_t kMostSheets = 48;
 
-/// A bit for each sheet: whether the cell `signs` is on its inner side, and whether it is within
-/// its extent.
+/// Two bits for each sheet: whether the cell `signs` is on its inner side, and whether it is within
+/// the sheet's extent.
 struct SheetSides {
   std::uint64_t inner = 0;
   std::uint64_t extent = 0;
@@ -89,7 +89,7 @@ struct SheetSides {
 };
 [[nodiscard]] SheetSides sheetSides(const Scene& scene, const Signs& signs);
 
-/// What is crossed between two points in neighboring cells; points are left empty.
+/// The kind of line between two points in neighboring cells; its points are left empty.
 [[nodiscard]] Boundary classify(const Scene& scene, const Signs& here, const Signs& there);
 
 }  // namespace palpate::tools

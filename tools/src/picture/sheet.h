@@ -1,6 +1,6 @@
 #pragma once
-/// Sheet: what the parts of a picture share, and those parts in the order in which they are
-/// painted.
+/// Sheet: the data that the parts of a picture share, and these parts in the order in which they
+/// are drawn.
 
 #include <algorithm>
 #include <functional>
@@ -19,26 +19,26 @@
 
 namespace palpate::tools {
 
-/// One picture being drawn. The section lies at (left, top), the view in space and the legend in a
-/// column of width `side` on the right. Lengths in pixels of the sheet unless noted.
+/// One picture while it is drawn. The section is at (left, top); the view in space and the legend
+/// are in a column of width `side` on the right. Lengths in pixels of the sheet unless noted.
 struct Sheet {
   const Scene& scene;
   const PictureOptions& options;
   LengthUnit unit;
-  double scale;  ///< of everything that is not to scale with the scene: 1 at 1600 x 1000
+  double scale;  ///< of all sizes that do not scale with the scene: 1 at 1600 x 1000
   Canvas canvas;
   Paint paint;
   CutPlane plane;
   View view;
   Section section;
   double side = 0.0, left = 0.0, top = 0.0;
-  std::vector<double> opacity;  ///< by region, of a picture in space; empty: all 1
+  std::vector<double> opacity;  ///< by region, for a picture in space; empty: all 1
   double peak = 0.0;            ///< [N] largest force of the track
   std::optional<DistanceLines> lines;
-  std::vector<RestForce> felt;           ///< on the plane
-  double felt_spacing = 0.0;             ///< [m] of those
+  std::vector<RestForce> felt;           ///< forces on the plane
+  double felt_spacing = 0.0;             ///< [m] spacing of those
   bool zoomed = false;                   ///< only the surroundings of the track are in view
-  std::vector<std::vector<Pixel>> busy;  ///< lines that names stay off
+  std::vector<std::vector<Pixel>> busy;  ///< lines that names must not cover
 
   Sheet(const Scene& the_scene, const PictureOptions& the_options)
       : scene(the_scene),
@@ -63,14 +63,15 @@ struct Sheet {
 
 void drawBoundaries(Sheet& s);  ///< walls, ports, sheets of the section
 void drawTrack(Sheet& s);       ///< hand, proxy and forces; sets `peak`
-/// Feels the plane within `box`, as the options ask for.
+/// Computes the forces on the plane within `box`, as the options say.
 void feelPlane(Sheet& s, const Box3& box, const Progress& progress);
-/// Of what feelPlane() found; `at` says where a point [m] is on the sheet, and a pixel is `step`
-/// [m].
+/// Draws the results of feelPlane(); `at` maps a point [m] to the sheet, and a pixel is `step` [m]
+/// wide.
 void drawFelt(Sheet& s, const std::function<Pixel(const Vec3&)>& at, double step);
-void drawScaleBar(Sheet& s);            ///< in the lower left corner of `view`
-void drawAxes(Sheet& s);                ///< coordinates around the section
-void drawNames(Sheet& s);               ///< of regions and ports, where there is room
-double drawLegend(Sheet& s, double y);  ///< below `y` in the right column; where it ends
+void drawScaleBar(Sheet& s);  ///< in the lower left corner of `view`
+void drawAxes(Sheet& s);      ///< coordinates around the section
+void drawNames(Sheet& s);     ///< of regions and ports, where there is room
+/// From `y` down in the right column; returns where it ends
+double drawLegend(Sheet& s, double y);
 
 }  // namespace palpate::tools

@@ -9,8 +9,9 @@ namespace {
 
 constexpr int kShades = 32;
 constexpr std::size_t kMostPoints = 4000;
-constexpr double kHides = 0.5;   // of the light; what lets less through hides
-constexpr double kMargin = 2.0;  // [pixels] a wall that the tip rests on does not hide it
+constexpr double kHides = 0.5;  // opacity above which a surface hides the path
+// [pixels] A wall on which the tip rests does not hide it within this distance
+constexpr double kMargin = 2.0;
 
 }  // namespace
 
@@ -47,10 +48,10 @@ void SpacePath::draw(Sheet& s, const Place& at, std::size_t count) const {
   std::vector<Pixel> line;
   line.reserve(count);
   for (std::size_t i = 0; i < count; ++i) line.push_back(at(shown_[i].proxy));
-  // What is hidden goes below what is not.
+  // Hidden parts are drawn first, below visible ones.
   for (const bool is_hidden : {true, false}) {
     for (std::size_t i = 0; i + 1 < count;) {
-      // Neighbors of one shade are one stroke.
+      // Adjacent segments of one shade are drawn as one stroke.
       const int shade = shadeAt(i);
       std::size_t end = i + 1;
       while (end + 1 < count && shadeAt(end) == shade && is_hidden_[end] == is_hidden_[i]) ++end;
@@ -102,8 +103,8 @@ void SpacePath::drawBar(Sheet& s, double y) const {
 }
 
 Color forceColor(double share) {
-  // From dark to bright, blue to yellow, so that also eyes that tell red from green badly see which
-  // is more.
+  // From dark to bright, blue to yellow, so that the order is visible to red-green color-blind
+  // readers too.
   constexpr Color kLow = rgb(0x1F3FA8);
   constexpr Color kMiddle = rgb(0xC3426B);
   constexpr Color kHigh = rgb(0xF5B70B);

@@ -11,24 +11,24 @@ namespace palpate::tools {
 
 class SpacePath {
  public:
-  /// Where a point [m] is on the sheet.
+  /// Maps a point [m] to the sheet.
   using Place = std::function<Pixel(const Vec3&)>;
 
-  /// Long tracks are thinned.
+  /// Long tracks are reduced to fewer points.
   explicit SpacePath(const Track& track);
 
   [[nodiscard]] bool empty() const noexcept { return shown_.empty(); }
   [[nodiscard]] std::size_t size() const noexcept { return shown_.size(); }
   [[nodiscard]] std::vector<Vec3> tips() const;
 
-  /// Finds which points are hidden from `camera`.
+  /// Finds the points that are hidden from `camera`.
   void look(const SpaceScene& space, const Camera& camera);
-  /// The first `count` points: hidden ones thin and faint.
+  /// Draws the first `count` points; hidden parts thin and faint.
   void draw(Sheet& s, const Place& at, std::size_t count) const;
-  /// The hand, the tip and the force at point `index`; the longest force is `longest` pixels.
+  /// Draws hand, tip and force at point `index`; the longest force is drawn `longest` pixels long.
   void drawHand(Sheet& s, const Camera& camera, const Place& at, std::size_t index,
                 double longest) const;
-  /// What the colors mean, below `y` in the right column.
+  /// Draws the key of the colors, below `y` in the right column.
   void drawBar(Sheet& s, double y) const;
 
  private:
@@ -39,7 +39,7 @@ class SpacePath {
   double peak_ = 0.0;  ///< [N]
 };
 
-/// How a path is colored where the force is `share` of the largest.
+/// The color of a path where the force is `share` of the largest.
 [[nodiscard]] Color forceColor(double share);
 
 }  // namespace palpate::tools

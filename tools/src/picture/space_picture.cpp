@@ -16,9 +16,9 @@ namespace palpate::tools {
 namespace {
 
 constexpr int kFrameTime = 50;          // [ms]
-constexpr double kLongestForce = 0.16;  // of the panel's height
-constexpr double kRoom = 0.02;          // around the scene, of its size
-constexpr double kEmpty = 0.1;          // [m] to each side, of a scene without a bounded layer
+constexpr double kLongestForce = 0.16;  // share of the panel's height
+constexpr double kRoom = 0.02;          // margin around the scene, as a share of its size
+constexpr double kEmpty = 0.1;  // [m] half width of the view of a scene without a bounded layer
 
 PictureOptions withoutTrack(PictureOptions picture) {
   picture.track = {};
@@ -47,7 +47,7 @@ std::vector<double> opacities(const Scene& scene, const SpaceView& view) {
   return all;
 }
 
-/// What is on every frame, and what differs.
+/// The parts that all frames share, and those that differ.
 class SpaceSheet {
  public:
   SpaceSheet(const Scene& scene, const PictureOptions& picture, const SpaceView& view,
@@ -112,7 +112,7 @@ class SpaceSheet {
   }
 
  private:
-  /// The legend tells of what a section has: here of all that the scene has and that can be seen.
+  /// The legend lists the contents of the section: here, everything in the scene that is visible.
   void fillLegend() {
     Sheet& s = sheet_;
     s.opacity = space_.opacity;
@@ -126,7 +126,7 @@ class SpaceSheet {
     s.section.boundaries.push_back(std::move(port));
   }
 
-  /// From the camera's first place, turned about z.
+  /// Turns the camera about z from its first position.
   void look(double angle) {
     const auto turned = [&](const Vec3& v) {
       const double c = std::cos(angle);
@@ -152,7 +152,7 @@ class SpaceSheet {
     if (sheet_.lines) sheet_.lines->check(camera_.step);
     path_.look(space_, camera_);
   }
-  /// So that nothing leaves the picture on the way round, and nothing jumps.
+  /// Fits all frames, so that nothing leaves the picture during a turn and the scale does not jump.
   void fitAll() {
     camera_.center = space_.box.center();
     const Vec3 half = 0.5 * space_.box.size();
@@ -181,7 +181,7 @@ class SpaceSheet {
     s.canvas.text({s.left, s.px(64)}, line, s.font(15, kFaintInk));
     s.canvas.clip(s.left, s.top, s.view.width, s.view.height);
     s.canvas.image(raster, s.left, s.top);
-    // From behind, the arrows on the cut face would lie on what hides them.
+    // Seen from behind, the arrows on the cut face would cover the surfaces that hide them.
     if (space_.plane && glm::dot(space_.plane->normal(), camera_.toward) > 0.0) {
       drawFelt(s, place, camera_.step);
     }
@@ -195,7 +195,7 @@ class SpaceSheet {
     path_.drawBar(s, drawLegend(s, s.top - s.px(20)));
   }
 
-  /// Which way the axes run, in the panel's lower right corner.
+  /// Shows the directions of the axes, in the panel's lower right corner.
   void drawTriad() {
     static constexpr const char* kNames[] = {"x", "y", "z"};
     static constexpr const char* kSides[] = {"right", "front", "up"};
@@ -205,7 +205,7 @@ class SpaceSheet {
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 tip = arm * Vec3(camera_.right[axis], camera_.up[axis], camera_.toward[axis]);
       const Pixel end{root.x + tip.x, root.y - tip.y};
-      // An axis that points at the viewer or away would be a dot under its own name.
+      // An axis towards or away from the viewer would be a dot under its own name.
       if (std::hypot(tip.x, tip.y) < 0.15 * arm) continue;
       s.canvas.arrow(root, end, {kFaintInk, s.px(1.6)}, s.px(7));
       TextStyle style = s.font(13, kFaintInk);
@@ -223,7 +223,7 @@ class SpaceSheet {
   SpacePath path_;
   SpaceScene space_;
   Camera camera_;
-  Camera ahead_;  ///< before it is turned
+  Camera ahead_;  ///< the camera before it is turned
 };
 
 }  // namespace

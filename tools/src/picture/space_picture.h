@@ -1,5 +1,5 @@
 #pragma once
-/// The picture of a scene in space: seen from anywhere, turning, or with a hand that moves in it.
+/// A picture of a scene in space: seen from any side, turning, or with a hand moving in it.
 
 #include <functional>
 #include <map>
@@ -13,25 +13,26 @@
 namespace palpate::tools {
 
 struct SpaceView {
-  /// From the scene at the viewer; not given: at the front, right and above of the cut, or of y.
+  /// Direction from the scene to the viewer; not given: at the front, right and above of the cut,
+  /// or of a cut across y.
   std::optional<Vec3> toward = {};
   struct Around {
     Vec3 center{0.0, 0.0, 0.0};  ///< [m]
     double radius = 0.0;         ///< [m]
   };
-  std::optional<Around> around = {};           ///< what is looked at; not given: all
+  std::optional<Around> around = {};           ///< the part to show; not given: all
   std::map<std::string, double> opacity = {};  ///< 0 to 1, by layer; others are opaque
   std::vector<CutPlane> slices = {};
   enum class Motion { kNone, kTurn, kReplay } motion = Motion::kNone;
-  int frames = 1;  ///< of a turn by 360 degrees, or of the whole track
+  int frames = 1;  ///< number of frames of a turn by 360 degrees, or of the whole track
 };
 
-/// Takes a frame of a motion, from 0 on, as a PNG.
+/// Receives each frame of a motion, counted from 0, as a PNG.
 using FrameSink = std::function<void(int frame, const std::string& png)>;
 
-/// Without a motion a PNG, else an animated WebP; or, with a sink for the frames, nothing.
-/// `picture.plane`, if given, is what is cut along, turned to face the viewer; the track is colored
-/// by force.
+/// Returns a PNG without a motion, else an animated WebP; nothing if `sink` takes the frames.
+/// `picture.plane`, if given, is the plane of the cut, turned to face the viewer; the track is
+/// colored by force.
 /// @throws Error: kUsage for a layer that the scene lacks, kOperation, kCancelled.
 [[nodiscard]] std::string drawSpacePicture(const Scene& scene, const PictureOptions& picture,
                                            const SpaceView& view, Console& console,

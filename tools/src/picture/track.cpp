@@ -20,7 +20,7 @@ Track trackOf(std::span<const TraceRow> rows) {
   Track track;
   track.points.reserve(rows.size());
   for (const TraceRow& row : rows) {
-    if (!isFinite(row.hip)) continue;  // a broken sensor's reading has no place
+    if (!isFinite(row.hip)) continue;  // a broken sensor's reading, which has no place
     track.points.push_back({row.hip, row.result.proxy, row.result.force});
   }
   return track;
@@ -30,7 +30,7 @@ Track readTrack(const std::string& file) {
   TraceReader reader(file);
   Track track;
   TraceLine row;
-  // A broken sensor's reading has no place, and none that a scale could hold.
+  // A broken sensor's reading has no place, or one beyond any scale.
   const auto isDrawn = [](const TraceLine& line) {
     return line.is_finite && HapticRenderer::isInReach(line.hip) &&
            HapticRenderer::isInReach(line.proxy) && std::isfinite(glm::length(line.force));

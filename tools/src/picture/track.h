@@ -1,5 +1,5 @@
 #pragma once
-/// A hand's path as pictures show it: where it was, where the proxy was, what was felt.
+/// The path of a hand in a picture: where the hand was, where the proxy was, and the force.
 
 #include <span>
 #include <string>

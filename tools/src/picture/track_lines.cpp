@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMostForces = 60;
 
-/// From the segment between `a` and `b` to `p`.
+/// Distance of `p` from the segment between `a` and `b`.
 double distanceTo(const Pixel& a, const Pixel& b, const Pixel& p) {
   const double dx = b.x - a.x;
   const double dy = b.y - a.y;
@@ -31,7 +31,7 @@ void forces(Sheet& s) {
     const Pixel tail = s.onSheet(s.view.pixel(p.proxy));
     const Pixel tip{tail.x + longest / s.peak * glm::dot(p.force, s.plane.right),
                     tail.y - longest / s.peak * glm::dot(p.force, s.plane.up)};
-    // Where arrows would lie on one another the first stands for all.
+    // Of arrows that would cover one another only the first is drawn.
     const bool taken = std::any_of(drawn.begin(), drawn.end(), [&](const auto& other) {
       return distanceTo(other.first, other.second, tail) < s.px(13) ||
              distanceTo(tail, tip, other.first) < s.px(13);
@@ -56,7 +56,7 @@ void drawTrack(Sheet& s) {
   if (points.empty()) return;
   std::vector<Pixel> hip;
   std::vector<Pixel> proxy;
-  // A point that moves the line by less than a third of a pixel is left out.
+  // Points that move the line by less than a third of a pixel are left out.
   const auto extend = [&](std::vector<Pixel>& line, const Vec3& p) {
     const Pixel at = s.onSheet(s.view.pixel(p));
     if (line.empty() || std::hypot(at.x - line.back().x, at.y - line.back().y) > 0.33)
@@ -66,7 +66,7 @@ void drawTrack(Sheet& s) {
     extend(hip, p.hip);
     extend(proxy, p.proxy);
   }
-  // The proxy on top: the hand shows where a wall keeps them apart.
+  // The proxy is drawn on top: the hand's line is visible where a wall keeps the two apart.
   s.canvas.line(hip, {rgb(0xFFFFFF, 0.6), s.px(3.4)});
   s.canvas.line(hip, {kHipInk, s.px(1.7), {s.px(7), s.px(4)}});
   s.canvas.line(proxy, {rgb(0xFFFFFF, 0.75), s.px(6)});

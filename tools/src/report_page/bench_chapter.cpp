@@ -12,9 +12,9 @@ namespace {
 using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kMostRows = 2000;
-constexpr std::size_t kMostMarks = 400;  // beyond this a plot is one blot
+constexpr std::size_t kMostMarks = 400;  // with more, a plot is unreadable
 
-/// A column of a table, and where its values stand in an object.
+/// A column of a table, and the path of its values in an object.
 struct Column {
   const char* heading;
   const char* pointer;
@@ -43,7 +43,7 @@ double numberAt(const Json& object, const char* pointer) {
   return value != nullptr && value->is_number() ? value->get<double>() : std::nan("");
 }
 
-/// The objects of an array; none if it is not one.
+/// The objects of an array; empty if it is not an array.
 std::vector<Json> objectsOf(const Json* list) {
   std::vector<Json> objects;
   if (list == nullptr || !list->is_array()) return objects;

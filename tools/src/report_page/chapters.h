@@ -15,13 +15,13 @@
 
 namespace palpate::tools {
 
-/// A trace or a record, summed up.
+/// Summary of a trace or a record.
 struct Touch {
   std::string file;
   TickSource source;
   TouchSummary summary;
   std::vector<TickColumn> columns;
-  Track track;  ///< thinned
+  Track track;  ///< reduced to fewer points
 };
 
 /// @throws Error (kInput, kCancelled).
@@ -33,14 +33,15 @@ struct SceneChapter {
   std::string name;      ///< for the heading
   DeviceOptions device;  ///< of the stability budget
   double rate = 1000.0;  ///< [Hz]
-  Track track;           ///< drawn into the picture; may be empty
+  Track track;           ///< to draw into the picture; may be empty
 };
 void addSceneChapter(HtmlPage& page, const LoadedScene& loaded, const SceneChapter& what,
                      Console& console);
 
-/// What `palpate bench ... --json` or `palpate accuracy ... --json` printed, which `file` holds.
+/// Adds a chapter on the output of `palpate bench ... --json` or `palpate accuracy ... --json`,
+/// which `file` holds.
 void addBenchChapter(HtmlPage& page, const Json& bench, const std::string& file);
-/// @throws Error (kInput, bench.*) for what is not one of these.
+/// @throws Error (kInput, bench.*) if `bench` is not such an output.
 void checkBench(const Json& bench, const std::string& file);
 
 }  // namespace palpate::tools

@@ -111,8 +111,8 @@ void HtmlPage::figure(std::string_view type, std::string_view bytes, std::string
 }
 
 std::string HtmlPage::text(std::string_view foot) const {
-  // What a name in a file could smuggle in could not load or run anything: nothing may but this
-  // style.
+  // Even if a name in a file smuggled in markup, it could not load or run anything: the policy
+  // allows this style only.
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "

@@ -19,7 +19,7 @@ constexpr double kBandBottom = 72.0;
 constexpr double kStrip = 130.0;     // height
 constexpr double kGap = 34.0;        // between strips
 constexpr double kLetter = 7.5;      // width
-constexpr double kFine = 0.25;       // what lies closer together is not told apart
+constexpr double kFine = 0.25;       // points that are closer together are drawn as one
 constexpr double kPortSpace = 60.0;  // between names of ports
 
 std::string hex(const Color& color) {
@@ -36,7 +36,8 @@ std::string box(double left, double right, double top, double bottom, const std:
          style + "/>\n";
 }
 
-/// One color a region, with its name where there is room, and green lines where a port was passed.
+/// A band with one color for each region, its name where there is room, and green lines where a
+/// port was passed.
 std::string regionBand(const TouchSummary& summary, const EvenScale& x, double end,
                        const std::vector<std::string>& regions,
                        const std::vector<std::string>& ports) {
@@ -70,7 +71,7 @@ std::string regionBand(const TouchSummary& summary, const EvenScale& x, double e
   return out;
 }
 
-/// What lies between least and most of each column.
+/// The area between the least and the most value of each column.
 std::string strip(double top, const EvenScale& x, const std::vector<TickColumn>& columns,
                   Extent TickColumn::*what, double unit, const std::string& label,
                   const char* color) {
@@ -113,7 +114,7 @@ std::string stripChart(const TouchSummary& summary, const std::vector<TickColumn
     times.add(column.end);
   }
   EvenScale x(times.least, times.most, kLeft, kRight);
-  x.least = times.least;  // all of the width is for what was felt
+  x.least = times.least;  // use the full width for the touch itself
   x.most = std::max(times.most, times.least + 1e-9);
   std::string out = svgPage(kWidth, kBottom + 44.0);
   out += regionBand(summary, x, times.most, regions, ports);

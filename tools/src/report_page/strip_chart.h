@@ -1,5 +1,5 @@
 #pragma once
-/// Regions, force, distance and energy over time, one above the other, as SVG.
+/// Charts of region, force, distance and energy over time, one above another, as SVG.
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
-/// Forces, distances and energy over time, so coarse that a plot shows all of it and no peak is
-/// lost.
+/// Forces, distances and energy over time, condensed so that a plot shows everything and loses no
+/// peak.
 
 #include <algorithm>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace palpate::tools {
 
-/// Least and most of what was seen.
+/// The least and the most value.
 struct Extent {
   double least = kInfinity;
   double most = -kInfinity;
@@ -24,7 +24,7 @@ struct Extent {
   }
 };
 
-/// A stretch of ticks.
+/// A column: an interval of ticks.
 struct TickColumn {
   double begin = 0.0;  ///< [s]
   double end = 0.0;    ///< [s]
@@ -33,8 +33,8 @@ struct TickColumn {
   Extent work;  ///< [J] on the hand since the first tick, each force held until the next tick
 };
 
-/// All ticks in at most kMost columns, of equal numbers of ticks but for the last, in constant
-/// memory. A reading without a place or a time counts not.
+/// All ticks in at most kMost columns of equally many ticks (except the last), in constant memory.
+/// A reading without a place or a time is not counted.
 class TickColumns final : public devices::RecordSink {
  public:
   static constexpr std::size_t kMost = 1024;
@@ -45,7 +45,7 @@ class TickColumns final : public devices::RecordSink {
  private:
   std::vector<TickColumn> columns_;
   std::uint64_t length_ = 1;  ///< [ticks] of a column
-  std::uint64_t count_ = 0;   ///< of the last one
+  std::uint64_t count_ = 0;   ///< ticks in the last column
   double work_ = 0.0;
   bool has_last_ = false;
   Vec3 last_hip_{0.0};

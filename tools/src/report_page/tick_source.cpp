@@ -12,11 +12,11 @@
 namespace palpate::tools {
 namespace {
 
-constexpr std::uint64_t kBetweenLooks = 4096;  // ticks from one look for a stop to the next
-/// Ids are 16 bits wide.
+constexpr std::uint64_t kBetweenLooks = 4096;  // ticks between two checks for a stop
+/// Ids have 16 bits.
 constexpr std::size_t kMostNames = std::numeric_limits<std::uint16_t>::max();
 
-/// Ids of names, given as the names come.
+/// Gives names ids in the order in which they appear.
 class Names {
  public:
   Names(std::vector<std::string>& names, const std::string& file) : names_(&names), file_(&file) {}

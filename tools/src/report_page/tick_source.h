@@ -1,5 +1,5 @@
 #pragma once
-/// The ticks of a trace or a record, with the names that they go by.
+/// The ticks of a trace or a record, with the names of their regions and ports.
 
 #include <optional>
 #include <span>
@@ -15,15 +15,16 @@ struct TickSource {
   std::vector<std::string> regions;  ///< names by RegionId
   std::vector<std::string> ports;    ///< names by PortId
   std::uint64_t ticks = 0;
-  std::optional<RecordAbout> about;  ///< of a record
-  std::uint64_t promised = 0;  ///< ticks of a record by its header; more than `ticks`: it was cut
+  std::optional<RecordAbout> about;  ///< only for a record
+  /// Ticks of a record by its header; if more than `ticks`, it was cut short
+  std::uint64_t promised = 0;
 };
 
-/// Of a `touch --trace`: ids are given in the order in which the names come.
+/// From a `touch --trace`: ids are given in the order in which names appear.
 /// @throws Error (kInput, trace.*; kCancelled).
 [[nodiscard]] TickSource readTrace(const std::string& file,
                                    std::span<devices::RecordSink* const> sinks);
-/// Of a `touch --record`. @throws Error (kInput, record.*; kCancelled).
+/// From a `touch --record`. @throws Error (kInput, record.*; kCancelled).
 [[nodiscard]] TickSource readRecord(const std::string& file, const RecordAbout& about,
                                     std::span<devices::RecordSink* const> sinks);
 

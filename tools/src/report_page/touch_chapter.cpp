@@ -12,14 +12,14 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr double kNoDepth = 1e-9;  // [m] a proxy stands off its wall by a rounding error
+constexpr double kNoDepth = 1e-9;  // [m] rounding error by which a proxy stands off its wall
 constexpr std::size_t kMostRows = 500;
 
 std::string millimeters(double meters) {
   return formatNumber(1e3 * (meters < kNoDepth ? 0.0 : meters), 4);
 }
 
-/// What the record was made with.
+/// Adds how the record was made.
 void addMade(HtmlPage& page, const RecordAbout& about) {
   const TouchOptions& o = about.options;
   Rows rows = {
@@ -68,7 +68,7 @@ void addFacts(HtmlPage& page, const TouchSummary& s) {
   page.facts(rows);
 }
 
-/// Each region once, in the order in which it was first entered.
+/// Lists each region once, in the order of first entry.
 void addTouched(HtmlPage& page, const Touch& touch) {
   struct Sum {
     RegionId region = kOutside;
@@ -147,7 +147,7 @@ Touch readTouch(const std::string& file) {
   const bool is_record = vdb::hasExtension(file, ".npy");
   RecordAbout about;
   if (is_record) about = readAbout(file).about;
-  // Only the constraint renderer says whether a tick settled, and only a record has it.
+  // Only the constraint renderer knows whether a tick settled, and only a record stores it.
   const bool tells_settled = is_record && about.renderer == "constraint";
   TouchMeter meter(tells_settled ? RendererKind::kConstraint : RendererKind::kPaper);
   ThinTrace thin;

@@ -82,7 +82,7 @@ std::string sceneHelp(const Vocabulary& vocabulary, const std::string& word) {
     }
     if (dot != std::string::npos && map.name != word.substr(0, dot)) continue;
     const KeyWords* key = map.find(name);
-    // The map that a kind of field holds tells which it is.
+    // The map that describes a kind of field also says which kind it is.
     if (key == nullptr ||
         (dot == std::string::npos && key->type == word && vocabulary.find(word))) {
       continue;

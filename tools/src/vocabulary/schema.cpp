@@ -13,7 +13,7 @@ using Count = KeyWords::Count;
 
 Json reference(const std::string& name) { return {{"$ref", "#/definitions/" + name}}; }
 
-/// What a vocabulary says in JSON Schema's own words.
+/// The part of a vocabulary that is written in JSON Schema itself.
 Json verbatim(const Node& node) {
   Json json;
   switch (node.kind) {
@@ -34,7 +34,8 @@ Json verbatim(const Node& node) {
   return *number == std::floor(*number) ? Json(static_cast<int>(*number)) : Json(*number);
 }
 
-/// The units of unitHelp(): "N/m (also N/mm, N/cm)", as alternatives of a regular expression.
+/// The units of unitHelp(), such as "N/m (also N/mm, N/cm)", as alternatives of a regular
+/// expression.
 std::string unitPattern(Dimension dimension) {
   std::string pattern;
   std::string help(unitHelp(dimension));
@@ -113,7 +114,7 @@ Json number(const KeyWords& key) {
   return json;
 }
 
-/// What may stand at `key`, or in its list.
+/// The schema of a value at `key`, or of an item in its list.
 Json one(const KeyWords& key) {
   if (key.schema.kind != Node::Kind::kNull) {
     return key.like.empty() ? verbatim(key.schema) : reference(key.like);
@@ -162,7 +163,7 @@ Json keySchema(const KeyWords& key) {
   std::string said = key.help;
   if (!key.fallback.empty()) said += (said.empty() ? "" : "; ") + key.fallback + " if not given";
   if (said.empty()) return json;
-  // What stands beside a reference does not count in draft 7.
+  // In draft 7, keywords beside a reference are ignored.
   if (json.contains("$ref")) json = {{"allOf", Json::array({std::move(json)})}};
   json["description"] = said + ".";
   return json;

@@ -10,7 +10,7 @@ namespace {
 using Form = KeyWords::Form;
 using Count = KeyWords::Count;
 
-/// Maps with a table of their own; the keys of others are explained where they stand.
+/// Maps that have a table of their own; the keys of other maps are explained where they are used.
 constexpr std::string_view kTables[] = {"field_kind", "image", "material", "layer",
                                         "wall",       "port",  "sheet"};
 
@@ -52,7 +52,7 @@ std::string oneText(const Vocabulary& vocabulary, const KeyWords& key) {
   return text;
 }
 
-/// What is said of a key, and of the keys of the map that it holds, those of each map once.
+/// The meaning of a key, and of the keys of the map that it holds; each map is explained once.
 std::string meaning(const Vocabulary& vocabulary, const KeyWords& key, std::set<std::string>& told,
                     bool is_inner = false) {
   std::string text = key.help;
@@ -84,7 +84,7 @@ std::string defaultText(const MapWords& map, const KeyWords& key) {
   return key.has_default ? "`" + key.fallback + "`" : key.fallback;
 }
 
-/// Of the kinds of fields, with the functions that make them.
+/// The table of the kinds of fields, with the functions that make them.
 std::string tableInCode(const Vocabulary& vocabulary) {
   std::string text = "| field | in C++ | in a scene file | metric |\n|---|---|---|---|\n";
   for (const KeyWords& kind : vocabulary.find("field_kind")->keys) {
@@ -122,7 +122,7 @@ std::string keyTable(const Vocabulary& vocabulary, std::string_view name) {
     std::string row = "| `" + key.name + "` | " + valueText(vocabulary, key) + " | " +
                       (are_kinds ? key.metric : defaultText(*map, key)) + " | " +
                       meaning(vocabulary, key, told);
-    // A bar would end the cell.
+    // A bar would end the table cell.
     for (std::size_t at = 2; (at = row.find("|N|", at)) != std::string::npos; at += 5) {
       row.replace(at, 3, "\\|N\\|");
     }

@@ -27,7 +27,7 @@ std::string number(double value) {
 
 const std::string kBlock = "{box: {center: [0, 0, -25], size: [100, 100, 50]}}";
 
-/// A groove along y whose walls include `degrees`, its bottom at the origin.
+/// A groove along y whose walls enclose `degrees`, its bottom at the origin.
 HardScene groove(double degrees) {
   const double half = 0.5 * degrees * std::numbers::pi / 180.0;
   const auto side = [&](double sign) {

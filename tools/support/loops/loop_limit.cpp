@@ -8,7 +8,8 @@
 namespace palpate::loops {
 namespace {
 
-/// All layers' surfaces, for the renderers of triangles: their edge is a fortieth of the scene.
+/// The surfaces of all layers, for renderers that need triangles: their edges are a fortieth of the
+/// scene.
 rivals::TriangleMesh meshOfScene(const Scene& scene) {
   rivals::TriangleMesh all;
   for (const Region& region : scene.regions()) {
@@ -96,7 +97,7 @@ LoopLimit findLimit(const LoopCase& what, const HardScene& scene, HapticRenderer
   out.cycle = above.chatter;
   out.frequency = above.frequency;
   const double used = out.found > 0.0 ? std::min(out.budget, out.found) : out.budget;
-  // A budget may be nothing, or without an end: no hand presses on such a wall.
+  // A budget may be 0 or infinite, and no hand presses on such a wall; therefore it is clamped.
   const LoopOutcome at = run(std::clamp(used, LoopLimit::kLeast, LoopLimit::kMost));
   out.to_hand = at.to_hand;
   out.largest_step = at.largest_step;

@@ -1,5 +1,5 @@
 #pragma once
-/// How stiff a wall one renderer can give one device, found in the loop.
+/// Finds, by running the loop, how stiff a wall one renderer can give one device.
 
 #include <functional>
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace palpate::loops {
 
-/// What is run: a row of the table.
+/// One case to run: a row of the table.
 struct LoopCase {
   std::string scene;
   std::string renderer;
@@ -22,7 +22,7 @@ struct LoopCase {
   int delay = 0;         ///< [samples]
 };
 
-/// A hand presses with about 1 N, whatever the stiffness.
+/// The result; the hand presses with about 1 N, whatever the stiffness.
 struct LoopLimit {
   static constexpr double kLeast = 400.0;  ///< [N/m] the softest wall that is tried
   static constexpr double kMost = 1e5;     ///< [N/m] and the stiffest
@@ -31,12 +31,12 @@ struct LoopLimit {
   double linear = 0.0;  ///< [N/m] exact limit of the sampled loop on a flat wall
   double budget = 0.0;  ///< [N/m] StabilityBudget::stiffness()
   /// [N/m] The stiffest wall on which the hand comes to rest, to 1 %; 0: not even on the softest;
-  /// kMost: on every one.
+  /// kMost: on all of them.
   double found = 0.0;
-  double cycle = 0.0;      ///< [N] peak to peak of the force, 15 % above
-  double frequency = 0.0;  ///< [Hz] of it
-  // On a wall of the budget, or of `found` if that is less, between kLeast and kMost:
-  double to_hand = 0.0;       ///< [J] most that came out at the hand
+  double cycle = 0.0;      ///< [N] peak to peak of the force, at 15 % above `found`
+  double frequency = 0.0;  ///< [Hz] of this oscillation
+  // On a wall as stiff as the budget, or `found` if that is less, clamped to kLeast and kMost:
+  double to_hand = 0.0;       ///< [J] largest energy that reached the hand
   double largest_step = 0.0;  ///< [N] of the force from tick to tick
   double tick_ns = 0.0;       ///< [ns] of the renderer, median
   bool holds = false;         ///< the wall was felt at the end
@@ -44,15 +44,15 @@ struct LoopLimit {
 
 /// The names of the renderers: ours, the source paper's, and those of support/rivals.
 [[nodiscard]] const std::vector<std::string>& loopRenderers();
-/// Whether it can render the scene at all.
+/// Whether the renderer can render the scene at all.
 [[nodiscard]] bool canRender(const std::string& renderer, const HardScene& scene);
 /// @throws Error (kInput) if it cannot.
 [[nodiscard]] std::unique_ptr<HapticRenderer> makeLoopRenderer(const std::string& renderer,
                                                                const ScenePtr& scene);
 
-/// @throws Error (kUsage) for a device or hand that there is not.
+/// @throws Error (kUsage) for an unknown device or hand.
 [[nodiscard]] devices::LoopModel loopModelOf(const LoopCase& what);
-/// At most 24 runs of less than 3 s each, in the device's time. `poll` as in LoopSetting.
+/// At most 24 runs of less than 3 s of device time each. `poll` as in LoopSetting.
 [[nodiscard]] LoopLimit findLimit(const LoopCase& what, const HardScene& scene,
                                   HapticRenderer& renderer, const std::function<void()>& poll = {});
 

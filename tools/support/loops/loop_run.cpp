@@ -12,7 +12,7 @@
 namespace palpate::loops {
 namespace {
 
-/// Forces of some ticks, one after the other.
+/// The forces of some successive ticks.
 class Window {
  public:
   void add(const Vec3& force) { forces_.push_back(force); }
@@ -22,7 +22,7 @@ class Window {
     for (const Vec3& force : forces_) sum += force;
     return forces_.empty() ? sum : sum / static_cast<double>(forces_.size());
   }
-  /// The component that swings most, and by how much from peak to peak [N].
+  /// The component with the largest oscillation, and its peak to peak value [N].
   [[nodiscard]] std::pair<int, double> swing() const {
     Box3 box;
     for (const Vec3& force : forces_) box.include(force);
@@ -34,7 +34,7 @@ class Window {
     }
     return {most, size[most]};
   }
-  /// [1/tick] How often a component goes through its mean, upward.
+  /// [1/tick] How often a component crosses its mean upwards.
   [[nodiscard]] double turns(int axis) const {
     const double middle = mean()[axis];
     int count = 0;
@@ -134,7 +134,7 @@ LoopOutcome runLoop(HapticRenderer& renderer, const LoopSetting& setting, double
 }
 
 double depthOfForce(const devices::LoopModel& loop, double stiffness, double force) {
-  double give = 1.0 / stiffness;  // [m/N]
+  double give = 1.0 / stiffness;  // [m/N] compliance of wall, hand and grip in series
   if (loop.hand && loop.hand->stiffness > 0.0) give += 1.0 / loop.hand->stiffness;
   if (loop.hand && loop.hand->grip_stiffness > 0.0) give += 1.0 / loop.hand->grip_stiffness;
   return force * give;
@@ -160,7 +160,7 @@ devices::Path pressOn(const Vec3& at, const Vec3& out, double depth, double hold
 
 double largestGain(const std::function<bool(double)>& is_stable, double low, double high) {
   if (!is_stable(low)) return 0.0;
-  // Upward by steps first: a limit cycle may come and go.
+  // First upwards in steps: a limit cycle may occur at some stiffness and vanish at a higher one.
   double good = low;
   double next = 1.5 * low;
   while (next < high && is_stable(next)) {

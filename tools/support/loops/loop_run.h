@@ -1,5 +1,5 @@
 #pragma once
-/// A hand in the loop: a simulated device and any renderer, in virtual time.
+/// Simulates a hand in the loop: a simulated device and any renderer, in virtual time.
 
 #include <cstdint>
 #include <functional>
@@ -13,65 +13,66 @@ namespace palpate::loops {
 struct LoopSetting {
   devices::LoopModel loop;
   devices::Path hand;  ///< [m, world] where the hand wants to go
-  double gain = 1.0;   ///< [-] force at the device per force of the renderer: makes every wall that
-                       ///< much stiffer
-  double window = 0.5;  ///< [s] at the end, that is judged
+  /// [-] Device force per renderer force: makes every wall stiffer by this factor
+  double gain = 1.0;
+  double window = 0.5;  ///< [s] at the end of the run; the part that is judged
   /// Noise of the sensor: each coordinate of a reading is one encoder step too high, too low, or
   /// right. Its seed is fixed.
   bool is_noisy = false;
-  /// Called every kPollTicks ticks; what it throws ends the run.
+  /// Called every kPollTicks ticks; an exception from it ends the run.
   std::function<void()> poll = {};
   static constexpr std::uint64_t kPollTicks = 256;
 };
 
-/// What a run came to.
+/// The result of a run.
 struct LoopOutcome {
-  double chatter = 0.0;  ///< [N] largest peak to peak of a component of the force, over the window
-  double before = 0.0;   ///< [N] the same over the window before
+  /// [N] Largest peak to peak value of a component of the force, over the window
+  double chatter = 0.0;
+  double before = 0.0;  ///< [N] the same over an equal time before the window
   double frequency =
-      0.0;            ///< [Hz] of the force about its mean, along the component that swings most
-  double mean = 0.0;  ///< [N] length of the mean force over the window
-  double depth =
-      0.0;  ///< [m] mean distance of the device from where it first touched, over the window
-  double to_hand = 0.0;    ///< [J] most that came out at the hand
-  double by_motors = 0.0;  ///< [J] most that the motors gave
+      0.0;             ///< [Hz] of the force about its mean, for the component that oscillates most
+  double mean = 0.0;   ///< [N] length of the mean force over the window
+  double depth = 0.0;  ///< [m] mean distance of the device from the first contact, over the window
+  double to_hand = 0.0;    ///< [J] largest energy that reached the hand
+  double by_motors = 0.0;  ///< [J] largest energy that the motors gave
   double tick_cost =
-      0.0;  ///< [J] K (v T)^2 + F v T of the largest stiffness of `wall`, speed and force
+      0.0;  ///< [J] K (v T)^2 + F v T, with `wall` for K and the largest speed and force
   double largest_step = 0.0;  ///< [N] of the force from tick to tick
   double tick_ns = 0.0;       ///< [ns] of the renderer, median over the ticks in contact
   bool touches = false;       ///< there was a force in the window
   bool is_lost = false;       ///< something was not finite, or went 1 m away
 
-  /// [N] A swing that dies out, or that a hand hardly feels, is none.
+  /// [N] Whether there is no oscillation: one that dies out, or that a hand hardly feels, does not
+  /// count.
   [[nodiscard]] bool isQuiet(double least = 0.01) const noexcept {
     return !is_lost && (chatter < least || chatter < 0.7 * before);
   }
 };
 
-/// Runs `renderer`, which is reset first, until the hand's path ends. `wall` [N/m]: the renderer's
-/// largest stiffness.
+/// Runs `renderer`, after a reset, until the hand's path ends. `wall` [N/m]: the renderer's largest
+/// stiffness.
 /// @throws Error as SimulatedDevice.
 [[nodiscard]] LoopOutcome runLoop(HapticRenderer& renderer, const LoopSetting& setting,
                                   double wall);
 
-/// [m] How far behind the surface a hand wants to go that presses with `force` [N] on a wall of
-/// `stiffness` [N/m], by its own spring and that of its grip.
+/// [m] How far behind the surface the hand's target must be so that it presses with `force` [N] on
+/// a wall of `stiffness` [N/m], through its own stiffness and that of its grip.
 [[nodiscard]] double depthOfForce(const devices::LoopModel& loop, double stiffness, double force);
 
-/// How a hand comes to where it holds.
+/// How a hand moves to the point that it holds.
 enum class Motion : std::uint8_t {
   kPress,  ///< slowly, at 20 mm/s
   kTap,    ///< at 0.5 m/s
-  kDrag,   ///< slowly, and then 10 mm along the surface at 0.5 m/s and back
+  kDrag,   ///< slowly, then 10 mm along the surface at 0.5 m/s and back
 };
 
-/// Where a hand goes that starts 2 mm out of `at` and, once it is `depth` [m] inside, holds for
+/// The path of a hand that starts 2 mm outside of `at`, goes `depth` [m] inside and stays there for
 /// `hold` [s]. `out` [-] is a unit vector.
 [[nodiscard]] devices::Path pressOn(const Vec3& at, const Vec3& out, double depth, double hold,
                                     Motion motion = Motion::kPress);
 
-/// The largest gain at which `is_stable` holds, between `low` and `high`, to 1 %; 0 if it does not
-/// at `low`.
+/// The largest gain between `low` and `high` at which `is_stable` holds, to 1 %; 0 if it does not
+/// hold at `low`.
 [[nodiscard]] double largestGain(const std::function<bool(double)>& is_stable, double low,
                                  double high);
 

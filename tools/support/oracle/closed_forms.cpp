@@ -15,7 +15,7 @@ bool isInside(const Vec3& p, const Ball& ball) {
   return glm::length(p - ball.center) < ball.radius;
 }
 
-/// Nearest point to `p` of the circle in which two spheres meet.
+/// Nearest point to `p` on the circle in which two spheres meet.
 Vec3 onCrease(const Vec3& p, const Ball& a, const Ball& b) {
   const double apart = glm::length(b.center - a.center);
   const Vec3 axis = (b.center - a.center) / apart;
@@ -78,8 +78,8 @@ Minima coneInside(const Vec3& p, const Vec3& base, const Vec3& axis, double radi
   const double up = glm::dot(p - base, axis);
   const Vec3 across = (p - base) - up * axis;
   const double flat = glm::length(across);
-  // In the half-plane through the axis: the base from (0, 0) to (radius, 0), the side from there to
-  // (0, height).
+  // In the half-plane through the axis, the base goes from (0, 0) to (radius, 0), and the side from
+  // there to (0, height).
   if (up >= 0.0 && flat * height + up * radius <= radius * height) return {p};
   const double length = std::hypot(radius, height);
   const double share =
@@ -98,11 +98,11 @@ Minima coneInside(const Vec3& p, const Vec3& base, const Vec3& axis, double radi
 Minima twoBallUnionOutside(const Vec3& p, const Ball& a, const Ball& b) {
   if (!isInside(p, a) && !isInside(p, b)) return {p};
   Minima minima;
-  // A ball that P is outside of has no minimum of its own: from there P pulls away from it.
+  // If P is outside a ball, that ball has no minimum of its own: P pulls the proxy away from it.
   if (isInside(p, a) && !isInside(onSphere(p, a), b)) minima.push_back(onSphere(p, a));
   if (isInside(p, b) && !isInside(onSphere(p, b), a)) minima.push_back(onSphere(p, b));
-  // The crease holds where P pulls into both balls' normals' cone: x - P = l_a n_a + l_b n_b, l >=
-  // 0.
+  // The crease holds the proxy if P pulls it into the cone of both balls' normals: x - P = l_a n_a
+  // + l_b n_b, l >= 0.
   const Vec3 x = onCrease(p, a, b);
   const Vec3 na = (x - a.center) / a.radius;
   const Vec3 nb = (x - b.center) / b.radius;
@@ -147,7 +147,8 @@ Minima foldMinima(const Vec3& p, const Vec3& point, const Vec3& n1, const Vec3& 
   const double c = glm::dot(n1, n2);
   if (a >= 0.0 || b >= 0.0) return {p};
   Minima minima;
-  // The foot on a plane counts as long as it lies on the wedge, where the other side does not hold.
+  // The foot on a plane counts only where it lies on the wedge: where the other condition does not
+  // hold.
   if (b - a * c < 0.0) minima.push_back(p - a * n1);
   if (a - b * c < 0.0) minima.push_back(p - b * n2);
   return minima;
@@ -176,8 +177,9 @@ Vec3 closestOnEllipsoid(const Vec3& p, const Vec3& radii) {
   Real low = pole;
   Real high = pole;
   for (std::size_t i = 0; i < 3; ++i) {
-    high += r[i] * q[i];  // there every term is at most its share of 1
-    if (r[i] == smallest) low = std::max(low, pole + r[i] * q[i]);  // there one term alone is 1
+    high += r[i] * q[i];  // at this t no term exceeds its share of 1
+    // At this t a single term is already 1
+    if (r[i] == smallest) low = std::max(low, pole + r[i] * q[i]);
   }
   high = std::max(high, low);
   std::array<Real, 3> x{};
@@ -193,7 +195,7 @@ Vec3 closestOnEllipsoid(const Vec3& p, const Vec3& radii) {
       x[i] = q[i] == 0.0L ? 0.0L : r[i] * r[i] * q[i] / (r[i] * r[i] + t);
     }
   } else {
-    // P lies so deep on the symmetry plane of the shortest axis that two points are equally close.
+    // P is so deep on the symmetry plane of the shortest axis that two points are equally close.
     Real left = 1.0L;
     std::size_t shortest = 0;
     for (std::size_t i = 0; i < 3; ++i) {

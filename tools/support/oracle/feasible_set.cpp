@@ -6,7 +6,8 @@
 namespace palpate::oracle {
 
 double FieldSide::spacing() const noexcept {
-  // Truncation (spacing / feature)^4 / 30 and rounding 1e-16 feature / spacing are both near 1e-13.
+  // Truncation error (spacing / feature)^4 / 30 and rounding error 1e-16 feature / spacing are both
+  // near 1e-13.
   return 1e-3 * field->featureSize();
 }
 
@@ -24,7 +25,7 @@ Vec3 FieldSide::gradient(const Vec3& p, double scale) const noexcept {
 }
 
 Mat3 FieldSide::hessian(const Vec3& p) const noexcept {
-  const double h = 4.0 * spacing();  // second differences divide the rounding by h twice
+  const double h = 4.0 * spacing();  // second differences divide the rounding error by h twice
   const double center = value(p);
   Mat3 out(0.0);
   for (int i = 0; i < 3; ++i) {
@@ -60,7 +61,7 @@ FeasibleSet FeasibleSet::of(FieldPtr field, double sign, const Pose& pose) {
     case Kind::kFaces: {
       std::vector<FeasibleSet> sets;
       for (const FieldPtr& operand : structure.operands) sets.push_back(of(operand, sign, pose));
-      // Outside a union is outside all its operands; inside it, inside any.
+      // Outside a union means outside all its operands; inside it means inside any of them.
       const bool all = (structure.kind == Kind::kUnion) == (sign > 0.0);
       return all ? allOf(sets) : anyOf(sets);
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Where a proxy may be, as a test states it: sides of fields, put together by AND and OR.
+// The set where a proxy may be, in a test's own terms: sides of fields, combined by AND and OR.
 
 #include <vector>
 
@@ -8,8 +8,8 @@
 namespace palpate::oracle {
 
 /// One side of one smooth field: the points with sign * S >= 0. Only values are asked of the field;
-/// derivatives are this file's own differences of order 4, so that a wrong gradient cannot agree
-/// with itself.
+/// derivatives are finite differences of order 4 computed here, so that a wrong gradient cannot
+/// confirm itself.
 struct FieldSide {
   FieldPtr field;
   double sign = 1.0;  ///< +1: outside is allowed, -1: inside is
@@ -18,7 +18,7 @@ struct FieldSide {
   [[nodiscard]] double value(const Vec3& p) const noexcept {
     return sign * field->value(pose.applyInverse(p));
   }
-  /// `scale`: of the spacing of the differences.
+  /// `scale`: factor on the spacing of the differences.
   [[nodiscard]] Vec3 gradient(const Vec3& p, double scale = 1.0) const noexcept;
   [[nodiscard]] Mat3 hessian(const Vec3& p) const noexcept;
 
@@ -26,7 +26,7 @@ struct FieldSide {
   [[nodiscard]] double spacing() const noexcept;
 };
 
-/// A union of intersections of sides. Any tree of AND and OR is one.
+/// A union of intersections of sides. Any tree of AND and OR can be written this way.
 class FeasibleSet {
  public:
   /// One conjunction: indices into sides(), all of which must hold.
@@ -40,7 +40,7 @@ class FeasibleSet {
   [[nodiscard]] const std::vector<FieldSide>& sides() const noexcept { return sides_; }
   [[nodiscard]] const std::vector<Branch>& branches() const noexcept { return branches_; }
 
-  /// At least 0 where allowed.
+  /// Not negative where the proxy is allowed.
   [[nodiscard]] double value(const Vec3& p) const noexcept;
   /// Smallest featureSize() of the fields [m].
   [[nodiscard]] double feature() const noexcept { return feature_; }

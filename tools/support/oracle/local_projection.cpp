@@ -10,10 +10,11 @@
 namespace palpate::oracle {
 namespace {
 
-/// Slack [features] by which a side counts as kept: what is left after Newton's last step.
+/// Tolerance [features] within which a side counts as kept: the error after Newton's last step.
 constexpr double kSlack = 1e-11;
 
-/// Differences over two spacings agree where a field is smooth, not within reach of a cusp or kink.
+/// Differences over two spacings agree where a field is smooth, but not within reach of a cusp or
+/// kink.
 bool isSmoothAt(const FeasibleSet& set, const LocalPoint& found) {
   return std::all_of(found.active.begin(), found.active.end(), [&](std::size_t i) {
     const FieldSide& side = set.sides()[i];
@@ -22,8 +23,8 @@ bool isSmoothAt(const FeasibleSet& set, const LocalPoint& found) {
   });
 }
 
-/// Nearest point to `q` on the surfaces of all `subset` at once, near `q`; by Gauss-Newton, which
-/// converges like (curvature * distance)^k.
+/// Point nearest to `q` on all surfaces of `subset` at once, near `q`; by Gauss-Newton, whose error
+/// shrinks like (curvature * distance)^k.
 std::optional<LocalPoint> onSurfaces(const FeasibleSet& set, const std::vector<std::size_t>& subset,
                                      const Vec3& q, double radius) {
   const std::size_t m = subset.size();
@@ -88,7 +89,7 @@ std::optional<LocalPoint> inBranch(const FeasibleSet& set, const FeasibleSet::Br
     }
   };
   for (const std::size_t i : near) attempt({i});
-  if (best) return best;  // nearest on one side and kept by all: no corner can be nearer
+  if (best) return best;  // nearest on one side and allowed by all others: no corner can be nearer
   for (std::size_t i = 0; i < near.size(); ++i) {
     for (std::size_t j = i + 1; j < near.size(); ++j) attempt({near[i], near[j]});
   }
@@ -101,7 +102,7 @@ std::optional<LocalPoint> inBranch(const FeasibleSet& set, const FeasibleSet::Br
   return best;
 }
 
-/// Distance from `q` along `direction` at which the set begins, if before `limit`.
+/// Distance from `q` along `direction` to the set, if less than `limit`.
 std::optional<double> entry(const FeasibleSet& set, const Vec3& q, const Vec3& direction,
                             double limit) {
   const double slack = -1e-13 * set.feature();
@@ -122,9 +123,9 @@ std::optional<double> entry(const FeasibleSet& set, const Vec3& q, const Vec3& d
   return std::nullopt;
 }
 
-/// By values alone: all directions coarsely, then a grid of directions about the best one, made
-/// finer and finer. A grid, because the best direction may lie at a corner of those that meet the
-/// set.
+/// Uses values alone: tries all directions coarsely, then a finer and finer grid of directions
+/// about the best one. A grid, because the best direction may be at a corner of the directions that
+/// meet the set.
 LocalPoint byDirections(const FeasibleSet& set, const Vec3& q, double radius,
                         const std::optional<Vec3>& allowed) {
   constexpr int kDirections = 600;
@@ -141,7 +142,7 @@ LocalPoint byDirections(const FeasibleSet& set, const Vec3& q, double radius,
     nearest = glm::length(*allowed - q);
     best = (*allowed - q) / nearest;
   }
-  for (int i = 0; i < kDirections; ++i) {  // a Fibonacci sphere
+  for (int i = 0; i < kDirections; ++i) {  // points of a Fibonacci sphere
     const double z = 1.0 - (2.0 * i + 1.0) / kDirections;
     const double angle = std::numbers::pi * (3.0 - std::sqrt(5.0)) * i;
     const double flat = std::sqrt(1.0 - z * z);

@@ -1,5 +1,5 @@
 #pragma once
-// The exact nearest allowed point to a point that is not far from one.
+// Finds the exact nearest allowed point to a point that is near the allowed set.
 
 #include <optional>
 #include <vector>
@@ -16,13 +16,14 @@ struct LocalPoint {
 };
 
 /// The point of `set` nearest to `q` among those within `radius` of it. One must exist; `allowed`
-/// is one, if any is known. All subsets of up to three sides are tried in every branch, each solved
-/// to rounding: alternating projections stall at creases. Where no subset has a solution (a cusp,
-/// an apex, a kink), directions are searched by values alone, which takes some milliseconds.
+/// is such a point, if the caller knows one. In every branch all subsets of up to three sides are
+/// tried, and each is solved to rounding, because alternating projections stall at creases. Where
+/// no subset has a solution (a cusp, an apex, a kink), directions are searched by values alone,
+/// which takes some milliseconds.
 [[nodiscard]] LocalPoint projectLocally(const FeasibleSet& set, const Vec3& q, double radius,
                                         const std::optional<Vec3>& allowed = {});
 
-/// True if all sides of a branch are kept at `p`, to 1e-11 of their feature sizes.
+/// True if `p` keeps all sides of a branch, to 1e-11 of their feature sizes.
 [[nodiscard]] bool isAllowed(const FeasibleSet& set, const Vec3& p);
 
 /// Solves the n x n system a x = b in place, n = b.size(), row major; false if singular.

@@ -10,13 +10,13 @@
 namespace palpate::oracle {
 namespace {
 
-/// Smallest eigenvalue and its vector of a symmetric 1 x 1 or 2 x 2 matrix.
+/// Smallest eigenvalue of a symmetric 1 x 1 or 2 x 2 matrix, with its eigenvector.
 struct LeastCurvature {
   double value = kInfinity;
   Vec3 direction{0.0, 0.0, 0.0};
 };
 
-/// An orthonormal basis of what is orthogonal to all `normals`.
+/// An orthonormal basis of the space orthogonal to all `normals`.
 std::vector<Vec3> tangents(const std::vector<Vec3>& normals) {
   std::vector<Vec3> basis;
   const auto reduce = [](Vec3 v, const std::vector<Vec3>& by) {
@@ -72,7 +72,7 @@ class Run {
       if (free) continue;
       if (!next.smooth && ++searches > kMostSearches) break;
 
-      // Newton only finishes what the flow has all but reached, so that the flow chooses the basin.
+      // Newton only finishes what the flow has almost reached, so that the flow chooses the basin.
       if (next.smooth && moved <= kNearly * h) {
         if (const auto end = polish(x, next.active)) {
           if (end->curvature.value < 0.0) {
@@ -86,7 +86,7 @@ class Run {
           if (left <= 1e-8 * h) return finished(out, end->point, next, left / h);
         }
       }
-      // A cusp, a kink or a weakly active corner: the flow itself must come to rest.
+      // At a cusp, a kink or a weakly active corner the flow itself must come to rest.
       resting = moved <= (next.smooth ? 1e-11 : 1e-6) * h ? resting + 1 : 0;
       if (resting >= 5) return finished(out, x, next, moved / h);
     }
@@ -98,9 +98,10 @@ class Run {
   [[nodiscard]] bool wasKicked() const noexcept { return was_kicked_; }
 
  private:
-  /// Sine of the angle off stationary at which Newton may take over.
+  /// Sine of the angle to a stationary point below which Newton may take over.
   static constexpr double kNearly = 0.05;
-  /// Projections by search that a run may take: at a cusp a handful do, along a kink none suffice.
+  /// Limit of projections by search in a run: at a cusp a handful is enough, along a kink no number
+  /// is.
   static constexpr int kMostSearches = 300;
 
   [[nodiscard]] LocalPoint advance(const Vec3& x) const {
@@ -120,8 +121,8 @@ class Run {
     return out;
   }
 
-  /// Off a stationary point that is not a minimum, the way it falls away. The caller runs both
-  /// ways.
+  /// Moves away from a stationary point that is not a minimum, along the direction in which the
+  /// distance falls. The caller tries both directions.
   Vec3 kicked(const Vec3& x, const Vec3& direction, double h) {
     was_kicked_ = true;
     return projectLocally(set_, x + kick_ * 0.1 * h * direction, h).point;
@@ -170,7 +171,7 @@ class Run {
       for (std::size_t i = 0; i < m; ++i) mu[i] += right[3 + i];
       if (!(glm::length(y - x) <= 0.25 * set_.feature())) return std::nullopt;
       const double length = glm::length(step);
-      // At rounding when small enough, or when small and no longer shrinking.
+      // At rounding level: the step is small enough, or it is small and no longer shrinks.
       fine = length <= done || (length <= 1e4 * done && length >= 0.5 * last_step);
       last_step = length;
     }
@@ -182,7 +183,7 @@ class Run {
     return Stationary{y, leastCurvature(lagrangian, normals)};
   }
 
-  /// Least squares: y - P = sum mu_i grad g_i.
+  /// Multipliers by least squares: y - P = sum mu_i grad g_i.
   [[nodiscard]] std::vector<double> startMultipliers(const Vec3& x,
                                                      const std::vector<std::size_t>& active) const {
     const std::size_t m = active.size();
@@ -206,7 +207,7 @@ class Run {
     const double b = glm::dot(z[0], lagrangian * z[1]);
     const double c = glm::dot(z[1], lagrangian * z[1]);
     const double least = 0.5 * (a + c) - std::hypot(0.5 * (a - c), b);
-    // (a - least) u + b v = 0 or b u + (c - least) v = 0: the larger row is the safer one.
+    // (a - least) u + b v = 0 or b u + (c - least) v = 0: the larger row is numerically safer.
     const Vec3 one = b * z[0] - (a - least) * z[1];
     const Vec3 two = (c - least) * z[0] - b * z[1];
     const Vec3 direction = glm::length(one) > glm::length(two) ? one : two;
@@ -240,7 +241,8 @@ OracleResult solveOracle(const FeasibleSet& set, const Vec3& previous, const Vec
       others.push_back(Run(set, hip, step, settings.most_steps, -1.0).from(previous));
     }
   }
-  // Ends of one basin agree to rounding (1e-7 at a cusp); two basins are far apart beside that.
+  // Results in one basin agree to rounding (1e-7 at a cusp); results in two basins differ by far
+  // more.
   const double near = 1e-5 * std::max(glm::length(hip - result.proxy), 1e-4 * set.feature());
   for (const OracleResult& other : others) {
     result.ambiguous |= glm::length(other.proxy - result.proxy) > near;

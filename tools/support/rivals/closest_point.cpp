@@ -35,7 +35,7 @@ class ClosestPoint final : public RivalRenderer {
     return spring(hip, nearest, *best, region());
   }
 
-  /// True if the foot lies within another solid: it is not a point of the whole surface.
+  /// True if the foot is inside another solid: then it is not on the surface of the whole.
   [[nodiscard]] bool isCovered(const Vec3& foot, const Solid& own) const noexcept {
     for (const Solid& other : solids()) {
       if (&other != &own && other.field->value(foot) < -1e-9) return true;

@@ -13,7 +13,7 @@ struct Plane {
   Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit
 };
 
-/// The point of up to three planes that is nearest to `p` [m]: Lagrange's conditions of min |x -
+/// The point on up to three planes that is nearest to `p` [m]: Lagrange's conditions of min |x -
 /// p|^2, solved plane by plane in an orthonormal basis of the normals.
 Vec3 nearestOn(const std::array<Plane, 3>& planes, std::size_t count, const Vec3& p) noexcept {
   std::array<Vec3, 3> basis{};
@@ -23,9 +23,9 @@ Vec3 nearestOn(const std::array<Plane, 3>& planes, std::size_t count, const Vec3
     Vec3 u = planes[i].normal;
     for (std::size_t k = 0; k < rank; ++k) u -= glm::dot(u, basis[k]) * basis[k];
     const double size = glm::length(u);
-    if (size < 1e-6) continue;  // parallel to one that is met already
+    if (size < 1e-6) continue;  // parallel to an earlier plane
     u /= size;
-    // Along u the earlier planes stay met.
+    // Moving along u keeps the earlier planes satisfied.
     x += glm::dot(planes[i].point - x, planes[i].normal) / size * u;
     basis[rank++] = u;
   }
@@ -40,8 +40,8 @@ class GodObject : public RivalRenderer {
  protected:
   [[nodiscard]] const Facets& facets() const noexcept { return facets_; }
 
-  /// Where the point goes that is drawn to `goal`, and stands at `from` now; the facets that hold
-  /// it in `held`.
+  /// The new place of a point that is at `from` and is drawn towards `goal`; the facets that hold
+  /// it are stored in `held_`.
   Vec3 draw(const Vec3& from, const Vec3& goal) noexcept {
     std::array<Plane, 3> planes{};
     count_ = 0;
@@ -50,7 +50,7 @@ class GodObject : public RivalRenderer {
       const std::optional<Hit> hit = facets_.firstHit(from, to);
       if (!hit) return to;
       held_[count_] = hit->triangle;
-      // The point stays a hair outside, so that it is met again from there.
+      // The point stays a hair outside, so that it meets the facet again from there.
       planes[count_] = {facets_.cornerOf(hit->triangle) + kHair * facets_.normalOf(hit->triangle),
                         facets_.normalOf(hit->triangle)};
       ++count_;
@@ -94,8 +94,8 @@ class ForceShading final : public GodObject {
       point_ = plain;
       return;
     }
-    // First on planes through the point with the interpolated normals; then from there on the true
-    // facets.
+    // First move on planes through the point with the interpolated normals; then from there on the
+    // true facets.
     std::array<Plane, 3> planes{};
     const std::size_t count = heldBy();
     for (std::size_t i = 0; i < count; ++i) {
@@ -105,7 +105,8 @@ class ForceShading final : public GodObject {
     point_ = draw(point_, below(goal, hip));
   }
 
-  /// The goal, kept beneath the facet that held the point: contact ends by the true surface only.
+  /// The goal, kept beneath the facet that held the point, so that contact ends only at the true
+  /// surface.
   [[nodiscard]] Vec3 below(const Vec3& goal, const Vec3& hip) const noexcept {
     const Vec3& n = facets().normalOf(facet(0));
     const double depth = glm::dot(n, facets().cornerOf(facet(0)) - hip);

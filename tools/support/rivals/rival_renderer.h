@@ -1,5 +1,5 @@
 #pragma once
-// What all rivals share.
+// Shared by all rivals.
 
 #include <span>
 #include <vector>
@@ -15,8 +15,8 @@ struct Solid {
   double damping = 0.0;    ///< [N s/m]
 };
 
-/// What the interface asks for beside a tick: rivals cross nothing, keep to the contents of the
-/// scene, have no sources of energy and no limits of the force.
+/// The parts of the interface besides a tick: rivals cross no walls, keep the contents of the
+/// scene, and have neither sources of energy nor limits of the force.
 class RivalRenderer : public HapticRenderer {
  public:
   [[nodiscard]] TickResult update(const HipState& hip) noexcept final;
@@ -29,8 +29,8 @@ class RivalRenderer : public HapticRenderer {
   [[nodiscard]] const Vec3& unlimitedForce() const noexcept final { return last_.force; }
   [[nodiscard]] double sourceWork() const noexcept final { return 0.0; }
   void reset() noexcept final;
-  /// Their memory is not a RendererState: a state is always that of a first tick, and none is
-  /// taken.
+  /// Their memory is not a RendererState: state() always returns that of a first tick, and no state
+  /// can be set.
   [[nodiscard]] RendererState state() const noexcept final { return {}; }
   [[nodiscard]] RendererState checkpoint() noexcept final { return {}; }
   [[nodiscard]] bool setState(const RendererState& /*state*/) noexcept final { return false; }
@@ -50,9 +50,9 @@ class RivalRenderer : public HapticRenderer {
   [[nodiscard]] RegionId region() const noexcept { return scene_->startRegion(); }
 
  private:
-  /// As before the first tick.
+  /// Returns to the state before the first tick.
   virtual void forget() noexcept = 0;
-  /// A tick of a good reading.
+  /// A tick with a valid reading.
   [[nodiscard]] virtual TickResult step(const HipState& hip) noexcept = 0;
 
   ScenePtr scene_;
@@ -60,7 +60,7 @@ class RivalRenderer : public HapticRenderer {
   TickResult last_;
 };
 
-/// Steps of Newton's from `p` onto the surface: for a distance one is all.
+/// Newton's method from `p` onto the surface: for a distance field one step is enough.
 [[nodiscard]] Vec3 downTheGradient(const Field& field, Vec3 p) noexcept;
 
 }  // namespace palpate::rivals

@@ -18,7 +18,7 @@ class SlowPlaneRenderer final : public RivalRenderer {
 
   [[nodiscard]] TickResult step(const HipState& hip) noexcept override {
     age_ += hip.dt;
-    // Times are sums of periods: half of one belongs to neither side.
+    // Times are sums of periods: the tolerance of half a period makes rounding irrelevant.
     if (felt_ == nullptr || age_ + 0.5 * hip.dt >= settings_.period) renew(hip.position);
     const double late =
         settings_.recovery > 0.0 ? late_ * std::max(0.0, 1.0 - age_ / settings_.recovery) : 0.0;
@@ -35,14 +35,14 @@ class SlowPlaneRenderer final : public RivalRenderer {
         [&](const Solid& a, const Solid& b) { return a.field->value(p) < b.field->value(p); });
     point_ = downTheGradient(*felt_->field, p);
     normal_ = unitOr(felt_->field->sample(point_).gradient, Vec3(0.0));
-    // How much deeper the probe is in the new plane than it was in the old one.
+    // How much deeper the probe is behind the new plane than it was behind the old one.
     late_ = was_felt ? glm::dot(normal_, point_ - p) - std::max(0.0, before) : 0.0;
     age_ = 0.0;
   }
 
   SlowPlane settings_;
   const Solid* felt_ = nullptr;
-  Vec3 point_{0.0, 0.0, 0.0};   ///< [m] of the plane
+  Vec3 point_{0.0, 0.0, 0.0};   ///< [m] on the plane
   Vec3 normal_{0.0, 0.0, 0.0};  ///< [-]
   double late_ = 0.0;           ///< [m]
   double age_ = 0.0;            ///< [s]

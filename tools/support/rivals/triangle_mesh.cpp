@@ -9,7 +9,7 @@ namespace palpate::rivals {
 namespace {
 
 /// Corner n of a cube is at (n & 1, n >> 1 & 1, n >> 2 & 1). Six tetrahedra about the diagonal from
-/// 0 to 7; neighbors agree on the diagonals of their faces.
+/// 0 to 7; neighboring cubes use the same diagonals on their common faces.
 constexpr std::array<std::array<int, 4>, 6> kTetrahedra{
     {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
 
@@ -158,7 +158,7 @@ std::optional<Hit> Facets::firstHit(const Vec3& from, const Vec3& to) const noex
     for (int i = 0; i < 3; ++i) {
       const Vec3& p = mesh_.points[t[static_cast<std::size_t>(i)]];
       const Vec3& q = mesh_.points[t[static_cast<std::size_t>((i + 1) % 3)]];
-      // A way along an edge meets one of its facets at least.
+      // A path that runs along an edge must hit at least one of the edge's facets.
       const double side = glm::dot(n, glm::cross(q - p, at - p));
       if (side < -1e-12 * glm::dot(q - p, q - p)) return;
     }

@@ -6,7 +6,7 @@
 namespace palpate::rivals {
 namespace {
 
-/// The eight voxels around a point, with their shares.
+/// Interpolates over the eight voxels around a point.
 template <typename Value, typename F>
 Value interpolated(const Vec3& at, Value sum, F&& f) {
   const Vec3 low = glm::floor(at);
@@ -68,7 +68,7 @@ Vec3 VoxelGrid::central(const Index& i) const noexcept {
 }
 
 Vec3 VoxelGrid::sobel(const Index& i) const noexcept {
-  // A central difference along each axis, smoothed by 1 2 1 along the two others.
+  // A central difference along each axis, smoothed by weights 1 2 1 along the other two.
   Vec3 sum(0.0);
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dy = -1; dy <= 1; ++dy) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Occupancy by voxels, and the gradients that can be taken of it.
+/// Occupancy of voxels, and the gradients that can be computed from it.
 
 #include <array>
 #include <vector>
@@ -9,18 +9,18 @@
 
 namespace palpate::rivals {
 
-/// Values of 0 (empty) to 1 (full), at the voxels' middles. Immutable; real-time safe but for the
-/// constructor.
+/// Values from 0 (empty) to 1 (full), at the voxels' centers. Immutable; real-time safe except for
+/// the constructor.
 class VoxelGrid {
  public:
-  /// Of `field` in `box` [m]. With a ramp of w voxels the value is 1/2 - S / (w h), cut off at 0
-  /// and 1.
+  /// Occupancy of `field` in `box` [m]. With a ramp of w voxels the value is 1/2 - S / (w h),
+  /// clamped to 0 and 1.
   VoxelGrid(const Field& field, const Box3& box, const Voxels& voxels);
 
-  /// [-] Of the eight voxels around `p` [m].
+  /// [-] Interpolated from the eight voxels around `p` [m].
   [[nodiscard]] double value(const Vec3& p) const noexcept;
-  /// [1/m] As Voxels::gradient says: at the nearest voxel by central differences or Sobel's
-  /// operator, or the central differences of the eight voxels around, interpolated.
+  /// [1/m] By Voxels::gradient: at the nearest voxel by central differences or Sobel's operator, or
+  /// the central differences at the eight voxels around, interpolated.
   [[nodiscard]] Vec3 gradient(const Vec3& p) const noexcept;
 
  private:

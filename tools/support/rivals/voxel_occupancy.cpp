@@ -25,7 +25,8 @@ class VoxelOccupancy final : public RivalRenderer {
  private:
   void forget() noexcept override {}
 
-  /// As deep as the value says, as if it rose evenly: no more than half of what it rises over.
+  /// The depth follows from the value as if the value rose linearly: at most half the distance over
+  /// which it rises.
   [[nodiscard]] TickResult step(const HipState& hip) noexcept override {
     TickResult out = untouched(hip);
     double most = 0.5;
@@ -39,7 +40,7 @@ class VoxelOccupancy final : public RivalRenderer {
     return out;
   }
 
-  double depth_ = 0.0;  ///< [m] over which the value rises from 0 to 1
+  double depth_ = 0.0;  ///< [m] distance over which the value rises from 0 to 1
   std::vector<VoxelGrid> grids_;
 };
 

@@ -19,7 +19,7 @@ namespace {
 
 using openvdb::Coord;
 
-/// Where the surface is.
+/// A box that holds the surface.
 Box3 bakeDomain(const Field& field, const BakeOptions& options) {
   Box3 domain = field.bounds();
   if (options.box) domain = domain.intersectedWith(*options.box);
@@ -35,14 +35,14 @@ Box3 bakeDomain(const Field& field, const BakeOptions& options) {
   return domain;
 }
 
-/// A box that holds the whole shape cuts nothing off.
+/// Whether the box cuts something off: one that holds the whole shape does not.
 bool isCut(const Field& field, const BakeOptions& options) {
   if (!options.box) return false;
   const Box3 bounds = field.bounds();
   return !options.box->contains(bounds.lo) || !options.box->contains(bounds.hi);
 }
 
-/// Of a field whose values are distances, or bounds of them.
+/// Bakes a field whose values are distances, or bounds of them.
 class FieldBaker {
  public:
   FieldBaker(const Field& field, const Box3& domain, const BakePlan& plan,
@@ -77,7 +77,7 @@ class FieldBaker {
                          to);
   }
 
-  /// One for each cell; null where no voxel is active and all have one sign.
+  /// One leaf for each cell; null where no voxel is active and all have one sign.
   std::vector<std::unique_ptr<BandLeaf>> makeLeaves() {
     const std::vector<CubeSearch::Cube>& cubes = search_.cubes();
     std::vector<std::unique_ptr<BandLeaf>> leaves(cubes.size());

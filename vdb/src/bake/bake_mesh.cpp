@@ -32,11 +32,11 @@ using Leaf = Tree::LeafNodeType;
 using Upper = Tree::RootNodeType::ChildNodeType;
 using Lower = Upper::ChildNodeType;
 
-/// [voxels] Triangles that smooth facets are cut into: none is felt.
+/// [voxels] Longest side of the triangles that smooth facets are cut into: too small to be felt.
 constexpr double kSmoothSide = 0.6;
 
-/// [voxels^2] that stands for the leaves of a band; long needles have one all along without any
-/// area.
+/// [voxels^2] An area from which the number of leaves of the band follows. A long needle has almost
+/// no area, but leaves all along its length.
 double estimatedArea(const Solid& solid) {
   double sum = 0.0;
   for (const auto& [i, j, k] : solid.triangles) {
@@ -59,7 +59,7 @@ Box3 boundsOf(const Solid& solid) {
   return bounds;
 }
 
-/// @throws Error naming a place that the winding number and the flood differ about.
+/// @throws Error naming a place that winding number and flood fill judge differently.
 void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& columns,
                       const BakePlan& plan) {
   const std::string hint =
@@ -73,7 +73,8 @@ void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& colum
   }
   CrossingSearch crossings(solid);
   for (const Columns::Pocket& pocket : columns.pockets()) {
-    // A space whose way out is narrower than a voxel is enclosed as well, and rightly outside.
+    // A space whose way out is narrower than a voxel is enclosed as well; it is outside, as it
+    // should be.
     const std::optional<Vec3> crossing = crossings.in(pocket.box.grownBy(1.5));
     if (!crossing) continue;
     throw inputError("mesh.ambiguous",
@@ -85,7 +86,7 @@ void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& colum
   }
 }
 
-/// The grid as one of distances without sign.
+/// Finishes a grid of unsigned distances.
 LevelSet finishUnsigned(const openvdb::FloatGrid::Ptr& grid, const BakeOptions& options) {
   auto metadata = options.metadata;
   metadata.try_emplace("frame", "world");
@@ -138,7 +139,8 @@ class MeshBaker {
     range_ = voxelRange({bounds.lo * plan_.voxel, bounds.hi * plan_.voxel}, search_, options_.name);
     refuseTooLong();
     requireMemory(estimatedArea(solid_), 1.0, search_);
-    std::optional<Solid> whole;  // where the walls left do not tell the inside by themselves
+    // Of a solid that a flood filled: the remaining walls alone do not tell its inside
+    std::optional<Solid> whole;
     if (is_solid) {
       columns_.emplace(solid_, options_.mesh_sign, progress_);
       if (options_.mesh_sign == MeshSign::kVote) requireAgreement(mesh_, solid_, *columns_, plan_);
@@ -172,8 +174,8 @@ class MeshBaker {
     }
   }
 
-  /// Lists by place, below, have a limit that only parts far from each other reach before the
-  /// memory's.
+  /// The lists below that are sorted by place take at most 2^24 voxels along an axis. Only a mesh
+  /// with parts far from each other reaches this limit before that of memory.
   void refuseTooLong() const {
     constexpr int kMost = 1 << 24;
     const Coord dim = range_.dim();
@@ -229,7 +231,7 @@ class MeshBaker {
     const float background = plan_.background;
     Leaf::NodeMaskType active = leaf->getValueMask();
     bool any = false;
-    // Active voxels of eight columns are the 64 bits of a word, y and z in its order.
+    // The active voxels of eight columns are the 64 bits of a word, ordered by y and z.
     for (int x = 0; x < 8; ++x) {
       std::array<std::uint8_t, 8> inside{};
       if (columns_) inside = columns_->areInside(origin.x() + x, origin.y(), origin.z());
@@ -251,7 +253,8 @@ class MeshBaker {
     return leaf;
   }
 
-  /// Whether walls here may be the two sides of a plate. If not, all normals are near the first.
+  /// Whether walls here may be the two sides of a plate. They are not if all normals are close to
+  /// the first.
   static bool facesItself(const std::vector<Facet>& facets) {
     const float* const first = facets.front().normal;
     return std::any_of(facets.begin(), facets.end(), [&](const Facet& facet) {
@@ -260,7 +263,7 @@ class MeshBaker {
     });
   }
 
-  /// Gives every tile beside the leaves its side.
+  /// Gives every tile beside the leaves its sign.
   void fillInside() {
     Tree& tree = grid_->tree();
     const auto inside = [&](const Coord& at) { return columns_->isInside(at.x(), at.y(), at.z()); };
@@ -294,12 +297,12 @@ class MeshBaker {
   const BakeOptions& options_;
   const Progress& progress_;
   BakePlan plan_;
-  BakePlan search_;             ///< the same, with the band that distances are needed in
+  BakePlan search_;             ///< the same, but with the band in which distances are needed
   std::optional<float> shell_;  ///< [voxels] half of its thickness
   Solid solid_;
-  CoordBBox range_;  ///< of the voxels that the band can touch
+  CoordBBox range_;  ///< the voxels that the band can touch
   std::optional<Columns> columns_;
-  std::vector<std::uint8_t> faces_itself_;  ///< of each leaf
+  std::vector<std::uint8_t> faces_itself_;  ///< for each leaf: facesItself()
   openvdb::FloatGrid::Ptr grid_;
 };
 

@@ -15,7 +15,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// With fewer digits where there is much.
+/// The larger the size, the fewer digits.
 std::string roughlyInGigabytes(double bytes) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f GB", bytes * 1e-9);
@@ -63,7 +63,7 @@ BakePlan checkOptions(const BakeOptions& options) {
     throw inputError("unit.unknown", "unknown length unit '" + options.length_unit + "'",
                      "use m, cm, mm or um");
   }
-  // OpenVDB takes a transform whose determinant is below 3e-15 for singular.
+  // OpenVDB rejects a transform whose determinant is below 3e-15 as singular.
   constexpr double kLeastVoxel = 1.5e-5;  // [units]
   if (options.voxel_size < kLeastVoxel * *meters) {
     throw inputError("bake.voxel_size",
@@ -135,11 +135,12 @@ void requireMemory(double area, double margin, const BakePlan& plan) {
   using Leaf = Tree::LeafNodeType;
   using Lower = Tree::RootNodeType::ChildNodeType::ChildNodeType;
   using Upper = Tree::RootNodeType::ChildNodeType;
-  // How many cubes of a side touch the band: those whose half diagonal reaches it, from both sides.
+  // The number of cubes of a given side that touch the band: cubes whose half diagonal reaches it,
+  // on both sides of the surface.
   const auto touched = [&](double side) {
     return area * (std::sqrt(3.0) * (side - 1.0) + 2.0 * plan.half_width) / std::pow(side, 3.0);
   };
-  // A few of the upper nodes are there however small the grid is: eight around the origin.
+  // However small the grid is, it has a few of the upper nodes: the eight around the origin.
   const double fixed = 8.0 * sizeof(Upper);
   const double growing = touched(Leaf::DIM) * (sizeof(Leaf) + Leaf::SIZE * sizeof(float)) +
                          touched(Lower::DIM) * sizeof(Lower) + touched(Upper::DIM) * sizeof(Upper);

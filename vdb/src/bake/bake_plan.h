@@ -15,7 +15,7 @@
 
 namespace palpate::vdb {
 
-/// BakeOptions, checked and put into numbers.
+/// BakeOptions, checked and converted to the units of the bake.
 struct BakePlan {
   double voxel = 0.0;            ///< [m]
   double half_width = 0.0;       ///< [voxels] of the band, each side
@@ -25,7 +25,7 @@ struct BakePlan {
   std::uint64_t max_memory = 0;  ///< [bytes]
 };
 
-/// @throws Error (kInput) naming the option, its value and what it may be.
+/// @throws Error (kInput) naming the option, its value and the values it may have.
 [[nodiscard]] BakePlan checkOptions(const BakeOptions& options);
 
 /// The voxels that a band around a surface within `bounds` [m] can touch.
@@ -40,15 +40,15 @@ struct BakePlan {
 [[nodiscard]] LevelSet finishGrid(openvdb::FloatGrid::Ptr grid, const BakePlan& plan,
                                   const BakeOptions& options);
 
-/// The same grid, saying so if it has lost something.
+/// The same grid, with `lost` in its metadata if it has lost something.
 [[nodiscard]] LevelSet withLostParts(const LevelSet& grid, const std::string& lost);
 
-/// The memory of a band around a surface of `area` [voxels^2].
-/// @throws Error (kOperation), naming a voxel size that fits, if it is more than `margin` times
-/// what the plan allows.
+/// Checks the memory of a band around a surface of `area` [voxels^2].
+/// @throws Error (kOperation), naming a voxel size that fits, if it is more than `margin` times the
+/// plan's limit.
 void requireMemory(double area, double margin, const BakePlan& plan);
 
-/// [bytes] What 0 stands for in `max_memory`: 80 % of the machine's.
+/// [bytes] The limit that a `max_memory` stands for: 0 means 80 % of the machine's.
 [[nodiscard]] std::uint64_t memoryLimit(std::uint64_t max_memory);
 
 /// Runs body(index) for every index below `count` in parallel, in pieces of some 50 ms between

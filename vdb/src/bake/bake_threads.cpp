@@ -14,7 +14,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// The processors that this thread may run on, but for `processor`.
+/// The processors that this thread may run on, without `processor`.
 cpu_set_t processorsWithout(int processor) {
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -37,10 +37,10 @@ cpu_set_t processorsWithout(int processor) {
   return set;
 }
 
-/// What this thread may run on when it is not baking.
+/// The processors that this thread may run on while it is not baking.
 thread_local cpu_set_t before;
 
-/// TBB tells it of each thread that begins or ends to work in an arena.
+/// TBB calls it for each thread that starts or stops working in an arena.
 class Watch final : public tbb::task_scheduler_observer {
  public:
   Watch(tbb::task_arena& arena, const cpu_set_t& allowed)
@@ -48,8 +48,8 @@ class Watch final : public tbb::task_scheduler_observer {
     observe(true);
   }
   ~Watch() override {
-    // A thread that is still about to leave gets its processors back first; it has nothing left to
-    // do.
+    // Wait until threads that are just leaving have their processors back; they have no work left
+    // to do, so that this is short.
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     while (inside_ > 0 && std::chrono::steady_clock::now() < until) std::this_thread::yield();
     observe(false);

@@ -17,9 +17,10 @@ BandSource::BandSource(const Field& field, const Box3& domain, bool is_cut, doub
 // The distance is at least |S| / L.
 Verdict BandSource::judge(const FieldPart& from, const Vec3& center, double radius,
                           bool only_in_band, FieldPart& to) const {
-  // A billionth covers the rounding of positions and values.
+  // A relative billionth covers the rounding of positions and values.
   const double far = lipschitz_ * band_ * (1.0 + 1e-9);
-  // Where the surface of an implicit field is, its gradient is asked as well, of the whole.
+  // Near the surface of an implicit field the gradient of the whole field is asked for as well, so
+  // that no operand is dropped by value there.
   double limit = kInfinity;
   if (only_in_band && !implicit_) limit = far;
   const ValueRange range = parts_.narrow(from, center, radius, limit, to);
@@ -32,7 +33,7 @@ Verdict BandSource::judge(const FieldPart& from, const Vec3& center, double radi
     if (wall > reach) return Verdict::kOutside;
     if (wall >= -reach) return Verdict::kKeep;
   }
-  // Out there withWall() lifts all values outside the band.
+  // So far out withWall() raises every value beyond the band.
   if (!is_cut_ && !exact_ && boxDistance(center) > (radius + band_) * (1.0 + 1e-9)) {
     return Verdict::kOutside;
   }
@@ -52,11 +53,11 @@ double BandSource::withWall(double value, const Vec3& p) const noexcept {
   return wall > value && (is_cut_ || wall > 0.0) ? wall : value;
 }
 
-/// Whether withWall() may say something in the ball that the field does not.
+/// Whether withWall() may give another value in the ball than the field does.
 bool BandSource::hasWallNear(const Vec3& center, double radius) const noexcept {
   if (exact_ && !is_cut_) return false;
   const double most = boxDistance(center) + radius * (1.0 + 1e-9);
-  // A wall deeper than the band leaves what is there, and what is beyond it, as it is.
+  // A wall that lies deeper than the band changes nothing in the ball.
   return is_cut_ ? most > -band_ : most > 0.5 * band_;
 }
 

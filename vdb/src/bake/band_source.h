@@ -1,5 +1,5 @@
 #pragma once
-/// What bake() puts into a band: the values of a field with distances, cut off by a box.
+/// The values that bake() puts into a band: those of a field with distances, cut off by a box.
 
 #include <cstdint>
 
@@ -9,11 +9,11 @@ namespace palpate::vdb {
 
 enum class Verdict : std::uint8_t { kOutside, kInside, kKeep };
 
-/// A field that is not exact can fall short of the distance to its own bounds, and would have a
-/// band without end there: so that it ends, values rise with twice that distance to the band's
-/// width. Near the surface the field stays as smooth as it is, also where its bounds touch it. And
-/// a box may cut it off. judge() also serves fields whose value is not a distance
-/// (implicit_distances.h). Any number of threads may ask.
+/// A field that is not exact can fall short of the distance to its own bounds, so that its band
+/// would never end. Therefore values at the distance d from the bounds are raised to 2 d less the
+/// band's width, until that reaches the band's width. Near the surface the field stays as smooth as
+/// it is, also where its bounds touch it. A box may cut the field off. judge() also serves fields
+/// whose value is not a distance (implicit_distances.h). Any number of threads may call it.
 class BandSource {
  public:
   /// `domain` holds the surface, `band` is the half width; both in [m].
@@ -22,17 +22,17 @@ class BandSource {
   [[nodiscard]] const FieldParts& parts() const noexcept { return parts_; }
   [[nodiscard]] const FieldPart& whole() const noexcept { return parts_.whole(); }
 
-  /// Whether every point within `radius` of `center` is more than the band away from the surface;
-  /// if not, `to` is what is left of `from` there. It is exact, or only in the band if that is
-  /// enough.
+  /// Whether every point within `radius` of `center` is more than the band away from the surface.
+  /// If not, `to` receives the operands of `from` that matter there. The reduced field equals the
+  /// original one, or, with `only_in_band`, equals it in the band only.
   [[nodiscard]] Verdict judge(const FieldPart& from, const Vec3& center, double radius,
                               bool only_in_band, FieldPart& to) const;
 
-  /// A batch of what voxels hold [m], of a field that has distances.
+  /// The values [m] of a batch of voxels, of a field that has distances.
   void values(const FieldPart& part, const PointBatch& points, const Vec3& center, double radius,
               ValueBatch& out) const noexcept;
 
-  /// [m] to the box, negative in it.
+  /// [m] distance to the box, negative in it.
   [[nodiscard]] double boxDistance(const Vec3& p) const noexcept;
 
  private:

@@ -19,7 +19,7 @@ Coord lowerOrigin(const Coord& at) {
   return {at.x() & kMask, at.y() & kMask, at.z() & kMask};
 }
 
-/// What goes into one lower node: places in the lists of leaves and of blocks.
+/// The contents of one lower node: indices into the lists of leaves and of blocks.
 struct Group {
   std::vector<std::size_t> leaves, blocks;
 };
@@ -42,8 +42,8 @@ std::unique_ptr<Lower> makeLower(const Coord& origin, const Group& group, float 
   return node;
 }
 
-/// Groups in a fixed order. What is searched together stands together, so that the last one is
-/// asked first.
+/// Groups in a fixed order. Successive voxels are mostly in the same group, so that the last one
+/// found is tried first.
 class Groups {
  public:
   [[nodiscard]] Group& at(const Coord& voxel) {

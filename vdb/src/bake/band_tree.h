@@ -1,5 +1,5 @@
 #pragma once
-/// Leaves and tiles put together into a tree, in parallel.
+/// Puts leaves and tiles together into a tree, in parallel.
 
 #include <openvdb/openvdb.h>
 
@@ -16,9 +16,8 @@ struct BandBlock {
   int size = 8;
 };
 
-/// Adds `leaves`, whose origins are given beside them (null: there is none), and blocks that are
-/// inside, whose voxels get the value -background, to a tree without voxels. None may overlap
-/// another.
+/// Adds leaves and tiles to a tree without voxels. `origins` are those of `leaves` (null: no leaf);
+/// the blocks `inside` get the value -background. None may overlap another.
 void fillTree(openvdb::FloatTree& tree, const std::vector<openvdb::Coord>& origins,
               std::vector<std::unique_ptr<BandLeaf>> leaves, const std::vector<BandBlock>& inside);
 

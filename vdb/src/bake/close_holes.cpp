@@ -9,11 +9,12 @@ namespace {
 
 constexpr std::size_t kMostForLeastArea = 100;
 
-/// Edges that lack triangles, as the triangles would run; the same edge as often as it lacks one.
+/// Edges that lack triangles, directed as the missing triangles would run; an edge occurs once for
+/// each triangle that it lacks.
 using Missing = std::unordered_map<std::uint32_t, std::vector<std::uint32_t>>;
 
-/// Simple loops out of edges of which as many begin in each vertex as end there: any walk comes
-/// back to a vertex that it has seen, and what lies between is a loop.
+/// Splits edges into simple loops. In each vertex as many edges begin as end, so that any walk
+/// comes back to a vertex it has seen; the edges walked since then are a loop.
 std::vector<std::vector<std::uint32_t>> loopsOf(Missing& missing,
                                                 const std::vector<std::uint32_t>& starts) {
   std::vector<std::vector<std::uint32_t>> loops;
@@ -46,7 +47,7 @@ std::vector<std::vector<std::uint32_t>> loopsOf(Missing& missing,
   return loops;
 }
 
-/// The triangles of least area over a loop, by the best for each of its arcs.
+/// The triangles of least total area that span a loop, found by dynamic programming over its arcs.
 std::vector<Triangle> leastLid(const std::vector<Vec3>& vertices,
                                const std::vector<std::uint32_t>& loop) {
   const std::size_t n = loop.size();
@@ -81,7 +82,7 @@ std::vector<Triangle> leastLid(const std::vector<Vec3>& vertices,
 }
 
 std::vector<Triangle> fan(std::vector<Vec3>& vertices, const std::vector<std::uint32_t>& loop) {
-  // Each side counts by its length, so that many short ones do not pull the middle to them.
+  // Each side counts by its length, so that many short ones do not pull the middle towards them.
   Vec3 sum(0.0);
   double length = 0.0;
   for (std::size_t n = 0; n < loop.size(); ++n) {

@@ -11,21 +11,23 @@ constexpr int kMostLooks = 6;
 constexpr int kModelSteps = 8;
 constexpr int kCreeps = 2;
 // In voxels.
-constexpr double kLeash = 1.5;         ///< of one step
-constexpr double kFarthest = 2.5;      ///< from the start
-constexpr double kModelEnough = 3e-4;  ///< of a step that the next one would only square
+constexpr double kLeash = 1.5;     ///< longest single step
+constexpr double kFarthest = 2.5;  ///< farthest from the start
+/// A step this short needs no other: the next one would be of the order of its square
+constexpr double kModelEnough = 3e-4;
 constexpr double kOnSurface = 1e-5;
-constexpr double kLeastGain = 2e-3;  ///< of a step along the surface
-/// [voxels] A step s through a surface that bends by k a voxel leaves some k^2 s^3 / 6, if its bend
-/// changes over the same way as it turns; a surface that is flat where it is looked at is taken for
-/// one that bends by kLeastBend. That may be kMostLeft, and a tenth of what a cubic spline leaves
-/// of such a bend, 0.037 k^3.
+/// [voxels] A step along the surface has to gain more than this
+constexpr double kLeastGain = 2e-3;
+/// [voxels] After a step of length s, a surface of curvature k leaves an error of about k^2 s^3 /
+/// 6, if its curvature changes as fast as its direction does; where the surface looks flat,
+/// kLeastBend stands for its curvature. The error may be kMostLeft, or a tenth of the 0.037 k^3 by
+/// which a cubic spline is off for such a curvature.
 constexpr double kMostLeft = 1e-6;
 constexpr double kShareLeft = 0.0037;
 constexpr double kMostAnywhere = 1e-3;
 constexpr double kLeastBend = 0.03;
 
-/// Two directions across `n`, at right angles, of its length squared or less.
+/// Two vectors at right angles to `n` and to each other; not of unit length.
 std::pair<Vec3, Vec3> across(const Vec3& n) noexcept {
   const Vec3 size = glm::abs(n);
   const bool by_x = size.x <= size.y && size.x <= size.z;
@@ -35,8 +37,8 @@ std::pair<Vec3, Vec3> across(const Vec3& n) noexcept {
   return {u, glm::cross(n, u)};
 }
 
-/// From where the jet was taken to the closest point to `p` on the zero set of s + g e + e H e / 2,
-/// `apart` from there.
+/// The way from the place of the jet to the point closest to `p` on the zero set of the quadratic
+/// model s + g e + e H e / 2; `apart` is `p` seen from that place.
 std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel) noexcept {
   Vec3 e(0.0);
   for (int step = 0; step < kModelSteps; ++step) {
@@ -47,7 +49,8 @@ std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel
     const double s = jet.value + glm::dot(jet.gradient, e) + 0.5 * glm::dot(e, bent);
     const Vec3 rest = apart - e;
     const double lambda = glm::dot(rest, g) / square;
-    // Down to the surface, and along its tangents: how the field bends across it does not matter.
+    // Solve along the normal and in the tangent plane: how the field curves across the surface does
+    // not matter.
     const Vec3 down = (-s / square) * g;
     const auto [u, v] = across(g);
     const Mat3 hessian = jet.hessian * lambda;
@@ -58,8 +61,8 @@ std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel
     const double vv = glm::dot(v, bent_v);
     const double size = uu * vv - uv * uv;
     const double flat = glm::dot(u, u) * glm::dot(v, v);
-    // Beyond a center of curvature the matrix turns indefinite; there the point on the tangent
-    // plane leads.
+    // Beyond a center of curvature the matrix is indefinite; there the step goes to the point on
+    // the tangent plane.
     Vec3 move = rest - lambda * g + down;
     if (uu > 0.0 && size > 1e-3 * flat) {
       const Vec3 pull = rest - down - hessian * down;
@@ -76,7 +79,7 @@ std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel
   return e;
 }
 
-/// Whether a step of the model is short enough to leave nothing that counts.
+/// Whether a step of the model is short enough that the error it leaves does not matter.
 bool isEnough(const FieldJet& jet, double step, double voxel) noexcept {
   double square = 0.0;
   for (int column = 0; column < 3; ++column) {

@@ -26,8 +26,8 @@ Columns::Columns(const Solid& solid, MeshSign sign, const Progress& progress) {
                          const Vec3& a = solid.vertices[i];
                          const Vec3& b = solid.vertices[j];
                          const Vec3& c = solid.vertices[k];
-                         // A hair beyond the triangle's box, where rounding could still find a side
-                         // to be crossed.
+                         // A hair beyond the triangle's box, where rounding could still let a side
+                         // be crossed.
                          constexpr double kHair = 1e-6;
                          const Vec3 lo = glm::min(glm::min(a, b), c) - kHair;
                          const Vec3 hi = glm::max(glm::max(a, b), c) + kHair;
@@ -47,7 +47,7 @@ Columns::Columns(const Solid& solid, MeshSign sign, const Progress& progress) {
   flood(sign);
 }
 
-/// By column, and upwards in each.
+/// Sorts crossings by column, and upwards in each.
 void Columns::sortCrossings(std::vector<Crossing>& crossings) {
   if (crossings.empty()) return;
   Crossing lo = crossings.front();
@@ -64,7 +64,8 @@ void Columns::sortCrossings(std::vector<Crossing>& crossings) {
   const int bits = bitsFor(across(lo.y, hi.y));
   radixSort(crossings, bits + bitsFor(across(lo.x, hi.x)),
             [&](const Crossing& c) { return across(lo.x, c.x) << bits | across(lo.y, c.y); });
-  // Threads left crossings in any order, so that the crossings must tell the rest of it.
+  // Threads left crossings in any order, so that within a column they are sorted by all their
+  // members.
   for (auto begin = crossings.begin(); begin != crossings.end();) {
     auto end = begin;
     while (end != crossings.end() && end->x == begin->x && end->y == begin->y) ++end;
@@ -82,7 +83,7 @@ void Columns::findRoles(const Solid& solid, const std::vector<Crossing>& crossin
   struct Nest {
     std::size_t crossings = 0;
     std::size_t enclosed = 0;
-    std::uint32_t container = kNone;  ///< the largest of those around
+    std::uint32_t container = kNone;  ///< the largest of the parts around it
   };
   std::vector<Nest> nests(solid.parts.size());
   const auto size = [&](std::uint32_t part) { return std::abs(solid.parts[part].volume); };
@@ -108,7 +109,7 @@ void Columns::findRoles(const Solid& solid, const std::vector<Crossing>& crossin
     if (nest.container == kNone) continue;
     const SolidPart& inner = solid.parts[part];
     const SolidPart& outer = solid.parts[nest.container];
-    // A larger part that a smaller one sticks out of is not a cavity; the smaller one may be.
+    // A larger part that a smaller one sticks out of is not its cavity; the smaller one may be one.
     if (size(part) > size(nest.container)) continue;
     const bool opposite = signOf(inner.volume) != signOf(outer.volume);
     const bool whole = nest.enclosed == nest.crossings;
@@ -185,7 +186,7 @@ std::array<std::uint8_t, 8> Columns::areInside(int x, int y, int z) const noexce
   for (auto [column, end] = findFrom(x, y); column != end && columns_[column].y < y + 8; ++column) {
     std::uint8_t& bits = inside[static_cast<std::size_t>(columns_[column].y - y)];
     for (std::size_t n = columns_[column].first; n < columns_[column + 1].first; ++n) {
-      // Whole numbers after `begin`, up to `end`.
+      // Integers above `begin`, up to `end`.
       const double first = std::clamp(std::floor(spans_[n].begin) + 1.0 - z, 0.0, 8.0);
       const double last = std::clamp(std::floor(spans_[n].end) + 1.0 - z, 0.0, 8.0);
       const auto below = [](double count) { return (1U << static_cast<unsigned>(count)) - 1U; };

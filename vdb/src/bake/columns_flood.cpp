@@ -1,4 +1,5 @@
-// What of the outside cannot be reached: a flood over the gaps between a column's spans.
+// Finds the gaps that cannot be reached from outside: a flood fill over the gaps between a column's
+// spans.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,7 +9,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Integers between two numbers, both excluded or not: a wall on a voxel makes no difference here.
+/// Number of integers between two numbers, both excluded or not: whether a wall that lies on a
+/// voxel counts does not matter here.
 std::size_t voxelsBetween(double lo, double hi) {
   const double count = std::floor(hi) - std::ceil(lo) + 1.0;
   return count > 0.0 ? static_cast<std::size_t>(count) : 0;
@@ -34,8 +36,8 @@ class Groups {
 }  // namespace
 
 void Columns::flood(MeshSign sign) {
-  // Gap n is what lies before span n; the first of each column, the last one's end, and columns
-  // without spans all are outside, which is group 0; gap n is group n + 1.
+  // Gap n lies before span n and is group n + 1. The gap before each column's first span, the one
+  // after its last span, and columns without spans are all outside, which is group 0.
   Groups groups(spans_.size() + 1);
   const std::size_t none = columns_.size() - 1;
   const auto is_first = [&](std::size_t column, std::size_t n) {
@@ -66,7 +68,7 @@ void Columns::flood(MeshSign sign) {
     const int x = first_x_ + static_cast<int>(row);
     for (std::size_t column = rows_[row]; column < rows_[row + 1]; ++column) {
       const std::size_t first = columns_[column].first;
-      if (columns_[column + 1].first - first < 2) continue;  // no gap within
+      if (columns_[column + 1].first - first < 2) continue;  // no gap between spans
       const int y = columns_[column].y;
       meet(column, find(x - 1, y));
       meet(column, find(x + 1, y));
@@ -78,7 +80,7 @@ void Columns::flood(MeshSign sign) {
   for (std::size_t n = 0; n < spans_.size(); ++n) {
     if (spans_[n].after_cavity) cavity[groups.root(n + 1)] = true;
   }
-  std::vector<std::size_t> name(spans_.size() + 1, 0);  // of pockets, from 1
+  std::vector<std::size_t> name(spans_.size() + 1, 0);  // number of each pocket, from 1
   std::vector<bool> enclosed(spans_.size(), false);
   for (std::size_t row = 0; row + 1 < rows_.size(); ++row) {
     const double x = first_x_ + static_cast<double>(row);

@@ -61,10 +61,11 @@ void CubeSearch::run(const CoordBBox& range, const Progress& progress) {
   int& size = top.second;
   parts_.assign(1, source_.whole());
   std::vector<Verdict> verdicts;
-  std::vector<FieldPart> left;  // empty where it is that of the cube before
+  std::vector<FieldPart> left;  // empty where it equals that of the parent cube
   for (;; size /= 2) {
     verdicts.assign(cubes.size(), Verdict::kKeep);
-    // Leaves are judged once more when they are filled; what they need not keep, is not kept.
+    // Leaves are judged once more when they are filled, so that their reduced fields are not
+    // stored.
     const bool is_narrowed = size > 8 && source_.whole().nodes.size() > 1;
     left.assign(is_narrowed ? cubes.size() : 0, {});
     parallelWithProgress(cubes.size(), progress, "bake: finding the surface", 0.0, 0.0,
@@ -89,7 +90,8 @@ void CubeSearch::run(const CoordBBox& range, const Progress& progress) {
   }
 }
 
-/// `left`, if there is one: what decides in the cube, if that is less than in the one before.
+/// Sets `left`, unless it is null, to the operands that matter in the cube, if these are fewer than
+/// in the parent cube.
 Verdict CubeSearch::judge(const Cube& cube, int size, FieldPart* left) const {
   thread_local FieldPart here;
   const FieldPart& before = parts_[cube.part];
@@ -101,9 +103,9 @@ Verdict CubeSearch::judge(const Cube& cube, int size, FieldPart* left) const {
   return verdict;
 }
 
-/// Blocks are kept in a shell of their half diagonal and the band on both sides of the surface, so
-/// that their number at any size tells the surface's area, and that the number of leaves. Early
-/// levels are coarse and judge with a wide margin.
+/// Blocks are kept in a shell whose half width is their half diagonal plus the band, so that at any
+/// size the number of blocks yields the surface's area, and the area the number of leaves. Early
+/// levels are coarse, and judged with a wide margin.
 void CubeSearch::refuseIfTooLarge(std::size_t blocks, int size) const {
   const double shell = std::sqrt(3.0) * (size - 1.0) + width_;
   const double area = static_cast<double>(blocks) * std::pow(size, 3) / shell;

@@ -13,9 +13,9 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] A patch whose control points are no further from its facet's is flat.
+/// [voxels] A patch is flat if no control point is farther than this from its facet.
 constexpr double kFlat = 1e-4;
-/// Of a triangle and its share of all else, while it is cut and while it is baked.
+/// Memory for a triangle and its share of everything else, while it is cut and while it is baked.
 constexpr std::uint64_t kBytesPerTriangle = 300;
 
 /// A side's control points: near where it begins and near where it ends.
@@ -39,7 +39,7 @@ class Patches {
     return true;
   }
 
-  /// `at`: shares of the three corners.
+  /// `at`: barycentric coordinates.
   [[nodiscard]] Vec3 point(std::size_t triangle, const Vec3& at) const {
     const auto& s = sides_[triangle];
     const Vec3& a = cornerOf(triangle, 0);
@@ -65,7 +65,7 @@ class Patches {
     return {(2.0 * from + to) / 3.0, (from + 2.0 * to) / 3.0};
   }
 
-  /// Of a side in its triangle: where it begins.
+  /// The corner of its triangle at which a side begins.
   [[nodiscard]] std::size_t placeOf(const Side& side) const {
     const Triangle& t = solid_.triangles[side.triangle];
     const std::uint32_t from = side.upwards ? side.low : side.high;
@@ -77,7 +77,7 @@ class Patches {
     return unitOr(glm::cross(cornerOf(triangle, 1) - a, cornerOf(triangle, 2) - a), Vec3(0.0));
   }
 
-  /// The mean over the corners that meet in a vertex without a crease between them.
+  /// Normals are means over the corners that meet in a vertex without a crease between them.
   void findNormals(const std::vector<Side>& edges, double crease_cosine) {
     const std::size_t count = solid_.triangles.size();
     std::vector<std::size_t> parent(3 * count);
@@ -91,7 +91,7 @@ class Patches {
       const Side& a = edges[begin];
       const Side& b = edges[begin + 1];
       if (!(glm::dot(facing(a.triangle), facing(b.triangle)) > crease_cosine)) return;
-      // One begins where the other ends.
+      // Each of the two sides begins where the other ends.
       const std::size_t at_a = placeOf(a);
       const std::size_t at_b = placeOf(b);
       parent[root(std::size_t{3} * a.triangle + at_a)] =
@@ -120,7 +120,7 @@ class Patches {
     const Vec3& low = solid_.vertices[first.low];
     const Vec3& high = solid_.vertices[first.high];
     Inner inner = straightSide(low, high);
-    // What three triangles share has no surface to follow.
+    // An edge of three triangles has no smooth surface to follow.
     if (end - begin <= 2) {
       inner[0] = low + way(first, second, true, high - low) / 3.0;
       inner[1] = high + way(first, second, false, low - high) / 3.0;
@@ -131,7 +131,8 @@ class Patches {
     }
   }
 
-  /// The way `along` an edge as it leaves one of its ends on the surface.
+  /// Tangent of the boundary curve at one end of an edge; `along` leads from there to the other
+  /// end.
   [[nodiscard]] Vec3 way(const Side& first, const Side& second, bool from_low,
                          const Vec3& along) const {
     const auto normal = [&](const Side& side) {
@@ -150,11 +151,11 @@ class Patches {
       const Vec3 mean = unitOr(a + b, a);
       result = along - glm::dot(along, mean) * mean;
     }
-    // A surface that leaves its facet steeply is not a smooth one.
+    // A surface that leaves its facet steeply is not smooth there: the side stays straight.
     const double length_of_side = glm::length(along);
     const double cosine = glm::length(result) / length_of_side;
     if (!(cosine > 0.5 && length_of_side > 0.0)) return along;
-    // As long as makes an arc's cubic a circle but for the sixth order.
+    // With this length the cubic follows an arc of a circle up to an error of sixth order.
     return 2.0 / ((1.0 + cosine) * cosine) * result;
   }
 
@@ -167,7 +168,7 @@ class Patches {
 struct Piece {
   Triangle corners;
   std::uint32_t patch;
-  std::array<Vec3, 3> at;  ///< of the corners in the patch
+  std::array<Vec3, 3> at;  ///< its corners, in barycentric coordinates of the patch
 };
 
 class Cutter {
@@ -223,7 +224,7 @@ class Cutter {
   }
 
   void cut(const Piece& piece) {
-    // The corners, and the middles of the sides after them.
+    // The corners, followed by the middles of the sides after them.
     constexpr std::uint32_t kNone = 0xffffffffU;
     std::array<std::uint32_t, 6> v{};
     std::array<Vec3, 6> at{};
@@ -260,7 +261,7 @@ class Cutter {
         return;
       }
       if (count == 2 && v[3 + n] == kNone) {
-        // The two others meet in `last`; below is a quadrangle, cut along its shorter diagonal.
+        // The other two meet in `last`; below them is a quadrangle, cut along its shorter diagonal.
         add(3 + next, last, 3 + last);
         const auto length = [&](std::size_t a, std::size_t b) {
           return glm::distance(solid_.vertices[v[a]], solid_.vertices[v[b]]);
@@ -282,14 +283,14 @@ class Cutter {
   double side_;
   std::uint64_t max_memory_;
   std::vector<Piece> pieces_;
-  std::vector<bool> flat_;  ///< of each patch
+  std::vector<bool> flat_;  ///< for each patch
   std::unordered_map<std::uint64_t, std::uint32_t> middles_;
 };
 
 }  // namespace
 
 void makeCurved(Solid& solid, double crease, double side, std::uint64_t max_memory) {
-  // Patches go on looking at the corners that the facets had.
+  // Patches still refer to the corners of the original facets.
   const Solid facets = solid;
   const Patches patches(facets, crease);
   const std::vector<Piece> pieces = Cutter(solid, patches, side, max_memory).run();

@@ -17,7 +17,7 @@ std::vector<Side> sortedSides(const std::vector<Triangle>& triangles) {
       sides.push_back({std::min(from, to), std::max(from, to), t, from < to});
     }
   }
-  // Sides come triangle by triangle, and stay so where they have the same corners.
+  // Sides come triangle by triangle, and a stable sort keeps that order where corners are the same.
   std::uint32_t most = 0;
   for (const Side& side : sides) most = std::max(most, side.high);
   const int bits = bitsFor(most);
@@ -33,7 +33,7 @@ std::vector<bool> turnAlike(const std::vector<Vec3>& vertices, const std::vector
     std::uint32_t triangle = kNone;
     bool agrees = true;
   };
-  // Each triangle has three sides, so that three places are enough.
+  // Each triangle has three sides, so that three entries are enough.
   std::vector<std::array<Neighbor, 3>> neighbors(triangles.size());
   const auto add = [&](std::uint32_t to, std::uint32_t triangle, bool agrees) {
     for (Neighbor& place : neighbors[to]) {

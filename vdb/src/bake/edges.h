@@ -12,7 +12,8 @@ namespace palpate::vdb {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A side of a triangle, under the name that all triangles on this edge give it.
+/// A side of a triangle, named by its vertices in a fixed order, so that all triangles on this edge
+/// use the same name.
 struct Side {
   std::uint32_t low, high;
   std::uint32_t triangle;
@@ -25,7 +26,7 @@ struct Side {
 
 [[nodiscard]] std::vector<Side> sortedSides(const std::vector<Triangle>& triangles);
 
-/// Calls visit(begin, end) for the range of sides of each edge.
+/// Calls visit(begin, end) with the range of sides of each edge.
 template <typename Visit>
 void forEachEdge(const std::vector<Side>& sides, const Visit& visit) {
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
@@ -39,20 +40,21 @@ void forEachEdge(const std::vector<Side>& sides, const Visit& visit) {
   return 0.5 * glm::length(glm::cross(vertices[t[1]] - a, vertices[t[2]] - a));
 }
 
-/// Turns triangles so that neighbors across an edge of two agree, as most of the area between edges
-/// of other numbers does. Returns which were turned.
+/// Turns triangles so that neighbors across an edge of two agree: in each patch bounded by edges of
+/// another number, the larger area decides. Returns which triangles were turned.
 std::vector<bool> turnAlike(const std::vector<Vec3>& vertices, const std::vector<Side>& sides,
                             std::vector<Triangle>& triangles);
 
 /// A hole in what should be a closed surface.
 struct Hole {
-  std::vector<std::uint32_t> loop;  ///< vertices, as the missing triangles would run
+  std::vector<std::uint32_t> loop;  ///< vertices, in the direction of the missing triangles
   std::vector<Triangle> lid;        ///< triangles over it
   double area = 0.0;                ///< of the lid
 };
 
 /// Loops along which triangles run one way only, with triangles that close them: the least area for
-/// loops of up to a hundred corners, else a fan about their middle, which becomes a vertex.
+/// loops of up to a hundred corners, beyond that a fan about their middle, which becomes a new
+/// vertex.
 [[nodiscard]] std::vector<Hole> closeHoles(std::vector<Vec3>& vertices,
                                            const std::vector<Side>& sides);
 

@@ -26,7 +26,7 @@ Error emptySolidError(const Mesh& mesh, const Solid& solid, const BakePlan& plan
   }
   const Vec3 size = box.size();
   const double longest = std::max({size.x, size.y, size.z});
-  // Of a plate: its two faces are the area.
+  // Thickness of a plate: the area is that of its two faces.
   const double thickness = area > 0.0 ? 2.0 * volume / area : 0.0;
   const std::string none = "no voxel lies inside: ";
   const auto lengthText = [&](double voxels) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Why no voxel lies inside of a mesh.
+/// Explains why no voxel lies inside a mesh.
 
 #include "bake/bake_plan.h"
 #include "bake/solid.h"
@@ -8,7 +8,7 @@
 namespace palpate::vdb {
 
 /// `bake.empty` (kInput) with its cause: the mesh is smaller than a voxel, encloses nothing, or is
-/// too thin; and with a voxel that holds it.
+/// too thin; and with a voxel size that holds it.
 [[nodiscard]] Error emptySolidError(const Mesh& mesh, const Solid& solid, const BakePlan& plan);
 
 }  // namespace palpate::vdb

@@ -7,10 +7,10 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] Corners no farther out and sides no longer than that are good enough in floats.
+/// [voxels] Up to this distance and this length of a side, floats are accurate enough.
 constexpr float kNear = 16.0F;
 constexpr float kShort = 6.0F;
-/// Height over length of what floats tell the plane of well enough.
+/// Above this ratio of height to length, floats give the plane accurately enough.
 constexpr float kStout = 0.01F;
 
 template <typename Vector>
@@ -26,8 +26,8 @@ Vector anyAcross(const Vector& v) noexcept {
   return normalizedOr(glm::cross(v, axis), axis);
 }
 
-/// Its frame. False, and nothing, for a triangle lower than `least` times its longest side, unless
-/// `any`.
+/// The triangle's frame. Returns false, and sets nothing, if the triangle is lower than `least`
+/// times its longest side, unless `any`.
 template <typename Vector>
 bool makeFacetOf(std::array<Vector, 3> corners, typename Vector::value_type least, bool any,
                  Facet& facet) noexcept {
@@ -49,7 +49,7 @@ bool makeFacetOf(std::array<Vector, 3> corners, typename Vector::value_type leas
   const Vector first = normalizedOr(corners[1] - corners[0], Vector(1, 0, 0));
   Vector normal = anyAcross(first);
   if (!is_flat) {
-    // Rounding tilts the normal of a sliver: made square to the longest side again.
+    // Rounding tilts the normal of a sliver: make it perpendicular to the longest side again.
     normal = cross * (Scalar(1) / area);
     normal = normalizedOr(normal - glm::dot(normal, first) * first, normal);
   }

@@ -8,7 +8,7 @@ namespace {
 
 using Kind = FieldStructure::Kind;
 
-/// A field of one leaf, however placed or turned inside out, answers best itself.
+/// A field of one leaf, even if placed or turned inside out, is fastest when asked directly.
 bool isSingle(const Field& field) {
   const FieldStructure structure = field.structure();
   switch (structure.kind) {
@@ -27,7 +27,7 @@ bool isSingle(const Field& field) {
 
 ValueRange negative(const ValueRange& range) { return {-range.hi, -range.lo}; }
 
-/// What value() and sample() ask a leaf for, and what CSG makes of it.
+/// What value() and sample() ask a leaf for, and how CSG combines the answers.
 struct AskValue {
   using Answer = double;
   double operator()(const Field& leaf, const Vec3& p) const noexcept { return leaf.value(p); }
@@ -109,7 +109,7 @@ ValueRange FieldParts::narrowNode(const FieldPart& from, std::size_t at, const V
     finish();
     return range;
   }
-  // A maximum is the minimum of what is turned about.
+  // A maximum is the negative of the minimum of the negatives.
   const bool is_minimum = item.kind == Kind::kUnion;
   const std::size_t scratch = to.least.size();
   ValueRange all{kInfinity, kInfinity};
@@ -120,8 +120,8 @@ ValueRange FieldParts::narrowNode(const FieldPart& from, std::size_t at, const V
     all.lo = std::min(all.lo, range.lo);
     all.hi = std::min(all.hi, range.hi);
   }
-  // Beyond the limit anything is as good. One stays in any case: the one whose values are the
-  // least.
+  // Operands beyond the limit may be dropped. One is kept in any case: the one with the least
+  // values.
   const double most = std::min(all.hi, limit);
   std::size_t kept = 0;
   std::size_t end = begin + 1;

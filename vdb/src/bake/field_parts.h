@@ -1,6 +1,5 @@
 #pragma once
-/// A field's CSG taken apart, so that in a cell only those operands are asked that can matter
-/// there.
+/// A field's CSG taken apart, so that in a cell only the operands that can matter there are asked.
 
 #include <algorithm>
 #include <cstdint>
@@ -10,38 +9,39 @@
 
 namespace palpate::vdb {
 
-/// What is left of a field in some cell: nodes in preorder, each with how many belong to it.
+/// The operands of a field that matter in some cell: nodes in preorder, each with the size of its
+/// subtree.
 struct FieldPart {
   struct Node {
     std::uint32_t which = 0;  ///< index into FieldParts
-    std::uint32_t size = 1;   ///< of it and all below it
+    std::uint32_t size = 1;   ///< number of nodes: itself and all below it
   };
   std::vector<Node> nodes;
   std::vector<double> least;  ///< [m] scratch of narrow()
 };
 
-/// Where the values in a ball lie, by the Lipschitz bounds of the operands: no less than `lo`, no
-/// more than `hi` [m]; infinite where nothing is known.
+/// Range of the values in a ball, by the Lipschitz bounds of the operands: at least `lo`, at most
+/// `hi` [m]; infinite where nothing is known.
 struct ValueRange {
   double lo = 0.0;
   double hi = 0.0;
 };
 
-/// Unions, intersections, complements and placements; all else is a leaf. Refers to the field, and
-/// never changes; any number of threads may ask.
+/// Takes unions, intersections, complements and placements apart; everything else is a leaf. Refers
+/// to the field, and never changes; any number of threads may use it.
 class FieldParts {
  public:
   explicit FieldParts(const Field& field);
 
   [[nodiscard]] const FieldPart& whole() const noexcept { return whole_; }
 
-  /// Puts into `to` what decides about the value somewhere in the ball, out of what did so in a
-  /// ball that holds it. The values there stay the same, bit for bit; but those beyond +-`limit`
-  /// [m] may become others beyond it with the same sign.
+  /// Puts into `to` the operands that decide the value somewhere in the ball; `from` holds those of
+  /// a larger ball around it. Values in the ball stay the same, bit for bit, except that those
+  /// beyond +-`limit` [m] may become other values beyond it with the same sign.
   ValueRange narrow(const FieldPart& from, const Vec3& center, double radius, double limit,
                     FieldPart& to) const;
 
-  /// Whether the part is a union of leaves, placed as they may be, each of which `is_good`.
+  /// Whether the part is a union of leaves, placed in whatever way, each of which `is_good`.
   template <class Test>
   [[nodiscard]] bool isUnionOf(const FieldPart& part, const Test& is_good) const {
     return std::all_of(part.nodes.begin(), part.nodes.end(), [&](const FieldPart::Node& node) {

@@ -16,8 +16,8 @@ namespace {
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// [voxels] A point of the surface that lies further from the voxel it was looked for from is
-/// another's.
+/// [voxels] A surface point farther than this from the voxel where the search began belongs to
+/// another voxel.
 constexpr double kFarthest = 2.0;
 
 GridError worse(const GridError& a, const GridError& b) {
@@ -27,7 +27,8 @@ GridError worse(const GridError& a, const GridError& b) {
 }
 
 /// A place in the voxel at `at`, each of whose coordinates is -0.5 to 0.5 voxels from the center,
-/// always the same: on a lattice, errors of interpolation would vanish at every point alike.
+/// always the same one. A regular lattice would not do: interpolation errors could vanish at all
+/// its points.
 Vec3 scattered(const openvdb::Coord& at) noexcept {
   Vec3 out(0.0);
   std::uint64_t state = 0x9E3779B97F4A7C15U;
@@ -64,7 +65,7 @@ class Comparison {
   }
 
  private:
-  /// Newton along the gradient. False if there is no way down.
+  /// Newton's method along the gradient. False if it does not reach the surface.
   [[nodiscard]] bool ontoSurface(Vec3& p) const noexcept {
     const double voxel = grid_.info().voxel_size;
     for (int i = 0; i < 8; ++i) {

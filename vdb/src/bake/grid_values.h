@@ -1,5 +1,5 @@
 #pragma once
-/// Values of a level set, in voxels. One for each thread.
+/// Reads values of a level set, in voxels. One object for each thread.
 
 #include <openvdb/openvdb.h>
 
@@ -25,7 +25,7 @@ class GridValues {
   [[nodiscard]] double at(const openvdb::Coord& voxel) const {
     return inVoxels(values_.getValue(voxel));
   }
-  /// Trilinear, at a place in voxels.
+  /// Trilinear interpolation at a place given in voxels.
   [[nodiscard]] double at(const Vec3& p) const {
     const Vec3 low = glm::floor(p);
     const openvdb::Coord first(static_cast<int>(low.x), static_cast<int>(low.y),

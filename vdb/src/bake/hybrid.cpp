@@ -26,9 +26,10 @@ namespace {
 using Kind = FieldStructure::Kind;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// A grid must be that many times as fast as what it stands for: it costs memory and an error.
+/// A grid must be this many times as fast as the part it replaces, because it costs memory and has
+/// an error.
 constexpr double kWorthIt = 1.5;
-/// Metadata of a part's grid: [m] by how much it may be off its part.
+/// Metadata key of a part's grid: [m] how far it may be off its part.
 constexpr const char* kTolerance = "tolerance_m";
 
 std::string inNanoseconds(double ns) {
@@ -37,7 +38,7 @@ std::string inNanoseconds(double ns) {
   return out.data();
 }
 
-/// Of a grid that is read again, so many blocks of 8^3 voxels are compared with its part.
+/// So many blocks of 8^3 voxels of a grid that was read again are compared with its part.
 constexpr std::size_t kBlocksToTellBy = 100;
 
 HybridOptions checked(HybridOptions options) {
@@ -60,7 +61,7 @@ Pose inverse(const Pose& pose) {
   return {back, -(back * pose.translation)};
 }
 
-/// Knows its distance near its surface only: a grid, or something made of one.
+/// Whether a field knows its distance near its surface only: a grid, or a field made from one.
 bool hasBand(const Field& field) {
   const Box3 bounds = field.bounds();
   if (!bounds.isBounded()) return false;
@@ -87,7 +88,7 @@ class HybridBaker {
     return out;
   }
 
-  /// Of grids made before.
+  /// Uses grids that were made before.
   FieldPtr runOn(const std::map<std::string, LevelSet>& grids) {
     collect(root_, root_->bounds(), options_.within, "", false);
     for (const auto& [name, grid] : grids) {
@@ -113,7 +114,7 @@ class HybridBaker {
     return rebuilt(root_);
   }
 
-  /// One grid of everything.
+  /// Makes one grid of the whole field.
   Hybrid runWhole() {
     BakeOptions bake_options = options_.bake;
     if (options_.within.isBounded()) setBox(bake_options, options_.within, root_->bounds());
@@ -135,10 +136,10 @@ class HybridBaker {
   struct Part {
     FieldPtr field;
     std::string name;
-    Box3 needed;         ///< [m] in its frame: where its surface can be one of the whole's
+    Box3 needed;         ///< [m] in its frame: where its surface can be part of the whole's surface
     Box3 within;         ///< [m] in its frame: HybridOptions::within
-    bool is_placed;      ///< its frame is not the whole's
-    FieldPtr made = {};  ///< the grid that takes its place; null: none does
+    bool is_placed;      ///< its frame differs from that of the whole
+    FieldPtr made = {};  ///< the grid that replaces it; null: none does
   };
 
   static FieldPtr cutOff(FieldPtr field, const BakeOptions& bake) {
@@ -151,7 +152,7 @@ class HybridBaker {
   void collect(const FieldPtr& field, const Box3& needed, const Box3& within,
                const std::string& name, bool is_placed) {
     const FieldStructure structure = field->structure();
-    // Out of its bounds it is outside, whatever its parts are there.
+    // Outside the bounds of the tree the whole is outside, whatever the parts are there.
     const Box3 here = needed.intersectedWith(field->bounds());
     switch (structure.kind) {
       case Kind::kUnion:
@@ -187,7 +188,7 @@ class HybridBaker {
     for (const FieldPtr& operand : field->structure().operands) keepLeavesOf(operand);
   }
 
-  /// Throws if `grid` was made of another field than `part`.
+  /// Throws if `grid` was made from another field than `part`.
   void refuseOther(const Part& part, const LevelSet& grid) const {
     GridError limit = allowed(grid.info().voxel_size);
     const auto told = grid.info().metadata.find(kTolerance);
@@ -230,10 +231,11 @@ class HybridBaker {
     return out;
   }
 
-  /// Where to bake what lies within `bounds`, so that it is right where it is needed.
+  /// Sets the box to bake, so that a surface within `bounds` is right where it is needed.
   static void setBox(BakeOptions& bake_options, const Box3& needed, const Box3& bounds) {
     const double band = bake_options.half_width * bake_options.voxel_size;
-    // Twice the band around what is needed: the cuts are then outside the band there.
+    // Twice the band around the needed box: the faces that cut are then outside the band of the
+    // needed box.
     const Box3 around = needed.grownBy(2.0 * band + 2.0 * bake_options.voxel_size);
     bake_options.box.reset();
     if (around.contains(bounds.lo) && around.contains(bounds.hi)) return;
@@ -242,7 +244,7 @@ class HybridBaker {
 
   bool isFastEnough(const Part& part, const Box3& domain, HybridPart& out) {
     if (options_.parts != Parts::kAuto) return false;
-    // Contact asks the face of a solid that has one.
+    // If the solid has faces, contact asks one face, not the solid.
     const FieldStructure structure = part.field->structure();
     const Field& felt = structure.operands.empty() ? *part.field : *structure.operands.front();
     out.analytic_ns = queryNanoseconds(felt, domain);
@@ -250,7 +252,7 @@ class HybridBaker {
     return out.analytic_ns < kWorthIt * out.grid_ns;
   }
 
-  /// What contact relies on, made sure of.
+  /// Certifies what contact relies on in a grid.
   [[nodiscard]] LevelSet sure(const LevelSet& grid) const {
     CertifyOptions certify;
     certify.sampler = options_.sampler;
@@ -258,7 +260,7 @@ class HybridBaker {
     return certified(grid, certify, progress_).grid;
   }
 
-  /// Of any grid with such voxels: a small ball's.
+  /// Time of a query of any grid with such voxels, measured on a small ball.
   double gridNanoseconds() {
     if (grid_ns_ == 0.0) {
       BakeOptions bake_options = options_.bake;
@@ -320,7 +322,7 @@ class HybridBaker {
     return part.name.empty() ? progress_ : namedProgress(progress_, "part " + part.name);
   }
 
-  /// The tree with grids in the place of parts; what did not change is the same object.
+  /// The tree with grids in place of parts; a subtree without changes is the same object as before.
   FieldPtr rebuilt(const FieldPtr& field) {
     const auto known = made_.find(field.get());
     if (known != made_.end()) return known->second;
@@ -362,7 +364,7 @@ class HybridBaker {
   std::vector<Part> parts_;
   std::unordered_map<const Field*, std::size_t> index_;  // into parts_
   std::unordered_set<const Field*> kept_;
-  std::unordered_map<const Field*, FieldPtr> made_;  // what each field of the tree came to be
+  std::unordered_map<const Field*, FieldPtr> made_;  // the replacement of each field of the tree
 };
 
 }  // namespace

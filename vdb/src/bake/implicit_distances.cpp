@@ -23,20 +23,20 @@ namespace {
 
 using openvdb::Coord;
 
-/// [voxels] beyond the band that still tell their neighbors: the nearest way round a hollow leads
-/// past them.
+/// [voxels] Voxels up to this far beyond the band still pass their points on to neighbors: the
+/// shortest path of voxels around a hollow may lead through them.
 constexpr double kBeyond = 1.0;
-/// [voxels] A neighbor's point that is nearer by less is the same one.
+/// [voxels] A neighbor's point that is nearer by less than this counts as the same point.
 constexpr double kNearer = 2e-3;
 constexpr int kLooks = 3;
-/// [voxels] A closest point that is further off than the one its search began at by more is another
-/// place's.
+/// [voxels] A search may end this much farther off than where it began; beyond that it has found
+/// another place of the surface.
 constexpr double kSamePlace = 2e-3;
-/// [voxels] A neighbor's point this near to the one that two in a row lead to is one of a smooth
-/// surface.
+/// [voxels] A neighbor's point this near to the one extrapolated from two voxels in a row lies on a
+/// smooth surface.
 constexpr double kInLine = 1.0;
-/// [voxels] Of a voxel that no one asks for: out of every band, so that it tells its neighbors
-/// nothing.
+/// [voxels] Distance of a voxel that nobody asks for: outside every band, so that it passes nothing
+/// on to its neighbors.
 constexpr double kOutOfReach = 1e6;
 
 class Spreading {
@@ -104,25 +104,25 @@ class Spreading {
     const Around around(leaves_, leaf);
     const bool is_inside = isInside(b, leaf, around, place, step);
     const double wall = source_.boxDistance(leaf.positionOf(place) * plan_.voxel) / plan_.voxel;
-    // Leaves reach outside the band of the whole.
+    // Leaves reach beyond the band of the whole.
     if (wall > plan_.half_width + kBeyond) return {place, start, kOutOfReach, is_inside};
     const double nearest = glm::length(start);
-    // Beyond a face that cuts, the wall tells unless the surface is farther off than that; so a
-    // point of the surface that is nearer does, and leads its neighbors as well.
+    // Beyond a face that cuts, the value is the distance to the face unless the surface is farther
+    // off. A nearer surface point therefore needs no refinement; it is only passed on to neighbors.
     const bool is_walled = is_cut_ && wall > 0.0 && (is_inside || nearest <= wall);
     if (is_walled) return {place, start, nearest, is_inside};
     const Vec3 foot = footOf(leaf, around, place, start, step);
     return {place, foot, glm::length(foot), is_inside};
   }
 
-  /// For the closest point of a voxel, from that of a neighbor, `start`, on. `step` leads to the
+  /// The closest point of a voxel, searched from a neighbor's, `start`. `step` leads to the
   /// neighbor.
   [[nodiscard]] Vec3 footOf(const DistanceLeaf& leaf, const Around& around, std::size_t place,
                             const Vec3& start, const Coord& step) const noexcept {
     const Vec3 voxel = leaf.positionOf(place);
     const Vec3 p = voxel * plan_.voxel;
     Vec3 guess = start;
-    // Two in a row lead on to where the third will be, but for how the surface's bend changes.
+    // The points of two voxels in a row extrapolate to the third one's, up to changes of curvature.
     const Coord far = placeOf(place) + Coord(2 * step.x(), 2 * step.y(), 2 * step.z());
     const Around::Voxel second = around.at(far);
     if (second.leaf != nullptr && testBit(second.leaf->known, second.place)) {
@@ -141,8 +141,8 @@ class Spreading {
     return (crept - p) / plan_.voxel;
   }
 
-  /// A voxel that is found for the first time, and whose side was not looked up, has that of the
-  /// voxel that it is found from.
+  /// A voxel that is found for the first time, and whose side was not looked up, takes the side of
+  /// the voxel that it was found from.
   [[nodiscard]] bool isInside(std::size_t b, const DistanceLeaf& leaf, const Around& around,
                               std::size_t place, const Coord& step) const noexcept {
     const bool is_found = leaf.distance[place] != DistanceLeaf::kNowhere;
@@ -161,7 +161,8 @@ class Spreading {
   FootSpread feet_;
 };
 
-/// [voxels^2] Half a voxel to each side of the surface has one voxel for each voxel's face of it.
+/// [voxels^2] A layer of half a voxel on each side of the surface has one voxel for each
+/// voxel-sized square of surface.
 double areaOf(const ImplicitSurface& surface, const BakeDomain& domain,
               const BakePlan& plan) noexcept {
   const auto near = static_cast<double>(std::count_if(
@@ -172,7 +173,7 @@ double areaOf(const ImplicitSurface& surface, const BakeDomain& domain,
   return near + 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
 }
 
-/// Cubes are found by their coordinates in 21 bits each.
+/// Cubes are looked up by their coordinates, with 21 bits for each.
 void requireNear(const openvdb::CoordBBox& range, const BakePlan& plan,
                  const BakeOptions& options) {
   constexpr int kFarthest = (1 << 23) - 64;
@@ -187,7 +188,7 @@ void requireNear(const openvdb::CoordBBox& range, const BakePlan& plan,
   }
 }
 
-/// While distances are found, a leaf takes some four times what it takes in the grid.
+/// While distances are found, a leaf takes some four times its memory in the grid.
 constexpr double kScratch =
     1.0 + static_cast<double>(sizeof(DistanceLeaf)) / (512.0 * sizeof(float));
 
@@ -196,7 +197,7 @@ constexpr double kScratch =
 openvdb::FloatGrid::Ptr implicitDistances(const Field& field, const BakeDomain& domain,
                                           const BakePlan& plan, const BakeOptions& options,
                                           const Progress& progress) {
-  // What lies beyond a face that cuts may be the nearest to what lies before it.
+  // The surface nearest to a point inside the box may lie outside it.
   const Box3 around = domain.is_cut ? domain.box.grownBy(plan.band) : domain.box;
   requireNear(voxelRange(around, plan, options.name), plan, options);
   const ImplicitSurface surface = findSurface(field, around, plan, options, progress);

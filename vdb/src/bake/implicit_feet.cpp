@@ -15,15 +15,15 @@ namespace {
 
 using openvdb::Coord;
 
-/// [voxels] The side is looked up of all voxels that may be as near as that. A voxel whose
-/// neighbor, by a corner, is on the other side is among them.
+/// [voxels] The side is looked up for all voxels that may be this near to the surface. They include
+/// each voxel that has a neighbor, diagonal ones too, on the other side.
 constexpr double kSided = 1.75;
-/// [voxels] Up to here a voxel looks for its closest point by itself. Each point of the surface has
-/// a voxel within 0.87.
+/// [voxels] Up to this distance a voxel searches for its closest point by itself. Each point of the
+/// surface has a voxel within 0.87.
 constexpr double kSeeded = 1.2;
-/// In a leaf no slope is taken for steeper than that many times the steepest between points two
-/// voxels apart there: a bound for all of space is many times what a quadratic form, say, has near
-/// its surface.
+/// A leaf's slope bound is at most this many times the steepest slope between its points two voxels
+/// apart. A bound for all of space is often far too large: that of a quadratic form, say, is many
+/// times its slope near its surface.
 constexpr double kSteeper = 1.7;
 
 constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
@@ -50,20 +50,20 @@ double steepestOf(const ValueBatch& values) noexcept {
   return std::sqrt(most);
 }
 
-/// [m] How far it is to the surface at least, if the field bends by no more than twice what it does
-/// here: where |S| = |grad S| t + |H| t^2.
+/// [m] Lower bound of the distance to the surface, if the field curves at most twice as much as it
+/// does here: the t for which |S| = |grad S| t + |H| t^2.
 double leastDistance(const FieldJet& jet) noexcept {
   double square = 0.0;
   for (int column = 0; column < 3; ++column) {
     square += glm::dot(jet.hessian[column], jet.hessian[column]);
   }
   const double slope = glm::length(jet.gradient);
-  // The root, written so that it holds for no bend as well.
+  // The root, written so that it also holds without curvature.
   const double value = std::fabs(jet.value);
   return 2.0 * value / (slope + std::sqrt(slope * slope + 4.0 * std::sqrt(square) * value));
 }
 
-/// What one leaf has.
+/// The results of one leaf.
 struct Found {
   KnownSides sides;
   std::vector<SurfaceFoot> feet;
@@ -88,7 +88,7 @@ class SurfaceFinder {
     const Vec3 first = at(cube.origin);
     const bool is_bounded = domain_.contains(first - Vec3(2.0 * voxel_)) &&
                             domain_.contains(first + Vec3(9.0 * voxel_));
-    // Blocks of 2^3 first, by their middles.
+    // First blocks of 2^3 voxels, by their middles.
     PointBatch points;
     ValueBatch values;
     for (std::size_t n = 0; n < kBatch; ++n) {
@@ -105,7 +105,7 @@ class SurfaceFinder {
       if (std::fabs(values[n]) > steepest * reach) continue;
       const std::size_t low = (n >> 4 << 7) + ((n >> 2 & 3U) << 4) + ((n & 3U) << 1);
       for (const std::size_t step : {0U, 1U, 8U, 9U, 64U, 65U, 72U, 73U}) {
-        // The leaf may reach out of what is asked for.
+        // The leaf may reach beyond the voxels asked for.
         if (!asked_.contains(first + voxel_ * vec(offsetOf(low + step)))) continue;
         places[count++] = static_cast<std::uint16_t>(low + step);
       }
@@ -149,7 +149,7 @@ class SurfaceFinder {
     const FieldJet jet = field_.jet(p);
     const double slope = glm::length(jet.gradient);
     if (!jet.in_band || leastDistance(jet) > kSeeded * voxel_) return;
-    // Where the gradient vanishes S / |grad S| does not tell how far the surface is.
+    // Where the gradient vanishes, S / |grad S| does not tell how far away the surface is.
     const bool is_far = !(std::fabs(jet.value) <= kSeeded * voxel_ * slope);
     if (is_far && !hasCrossing(p, value)) return;
     if (const std::optional<Vec3> foot = footOf(p, jet, slope)) {
@@ -183,7 +183,7 @@ class SurfaceFinder {
     return byBisection(p, jet.value);
   }
 
-  /// A point of the surface on the way to a neighbor on the other side.
+  /// A surface point between this voxel and a neighbor on the other side.
   [[nodiscard]] std::optional<Vec3> byBisection(const Vec3& p, double value) const noexcept {
     std::optional<Vec3> best;
     for (int axis = 0; axis < 3; ++axis) {
@@ -207,7 +207,7 @@ class SurfaceFinder {
   const BandSource& source_;
   ClosestPoint closest_;
   double voxel_;
-  Box3 asked_;  ///< [m] of voxels
+  Box3 asked_;  ///< [m] box of the voxels asked for
   double lipschitz_;
   Box3 domain_;
 };
@@ -217,7 +217,8 @@ class SurfaceFinder {
 ImplicitSurface findSurface(const Field& field, const Box3& domain, const BakePlan& plan,
                             const BakeOptions& options, const Progress& progress) {
   const BandSource source(field, domain, false, kSided * plan.voxel);
-  // A field that is much flatter than its Lipschitz bound keeps more cubes than its surface needs.
+  // For a field that is much flatter than its Lipschitz bound, more cubes are kept than its surface
+  // needs.
   constexpr double kMargin = 4.0;
   CubeSearch search(source, plan, 2.0 * kSided, kMargin);
   search.run(voxelRange(domain, plan, options.name), progress);

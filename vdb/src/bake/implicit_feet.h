@@ -1,6 +1,6 @@
 #pragma once
-/// Where the surface of an implicit field is, as a bake needs it: voxels beside it with their
-/// closest points.
+/// Where the surface of an implicit field is, in the form that a bake needs: voxels beside it with
+/// their closest points.
 
 #include <openvdb/openvdb.h>
 
@@ -11,7 +11,7 @@
 
 namespace palpate::vdb {
 
-/// A voxel by the surface, and the way from there to its closest point [voxels].
+/// A voxel beside the surface, and the vector from it to its closest point [voxels].
 struct SurfaceFoot {
   openvdb::Coord voxel;
   Vec3 foot;
@@ -27,12 +27,11 @@ struct KnownSides {
 struct ImplicitSurface {
   std::vector<SurfaceFoot> feet;  ///< in a fixed order
   std::vector<KnownSides>
-      leaves;  ///< a voxel that is in none, or not known there, has its neighbors' side
+      leaves;  ///< a voxel that is in no leaf, or not known in its leaf, has its neighbors' side
 };
 
-/// Looks at what lies within `domain` [m]: cubes of voxels are halved and dropped where the field's
-/// Lipschitz bound says that the surface is not there. Of a plate that passes between voxels there
-/// are feet too.
+/// Searches `domain` [m]: cubes of voxels are halved, and dropped where the field's Lipschitz bound
+/// excludes the surface. A plate that passes between voxels has feet too.
 /// @throws Error (kOperation) for memory, (kInput) where the field is not a number, kCancelled.
 [[nodiscard]] ImplicitSurface findSurface(const Field& field, const Box3& domain,
                                           const BakePlan& plan, const BakeOptions& options,

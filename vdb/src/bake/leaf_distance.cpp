@@ -21,7 +21,7 @@ LeafQuery makeQuery(const std::vector<Facet>& facets, float half_width, LeafScra
   const std::size_t lists = 8 * (count + 1);
   if (scratch.nearby.size() < lists) {
     scratch.distances.resize(8 * count);
-    // One more in each: lists are written before it is known that an entry stays.
+    // One more entry in each: an entry is written before it is known whether it stays.
     scratch.nearby.resize(lists);
     scratch.close.resize(lists);
   }

@@ -9,14 +9,15 @@
 
 namespace palpate::vdb {
 
-/// What the search writes to; kept from leaf to leaf. Sized by makeQuery().
+/// Scratch memory of the search, kept from leaf to leaf. Sized by makeQuery().
 struct LeafScratch {
-  std::vector<float> distances;       ///< squares of eight cubes for each facet
-  std::vector<std::uint32_t> nearby;  ///< facets that matter to each cube of 4^3
-  std::vector<std::uint32_t> close;   ///< and to each of 2^3 in one of them
+  std::vector<float> distances;       ///< squared distances of eight cubes for each facet
+  std::vector<std::uint32_t> nearby;  ///< facets that matter to each cube of 4^3 voxels
+  std::vector<std::uint32_t> close;   ///< facets that matter to each cube of 2^3 in one of them
 };
 
-/// The same as plain pointers: files compiled for newer processors share no code with others.
+/// The same as plain pointers: files compiled for newer processors share no inline code with
+/// others.
 struct LeafQuery {
   const Facet* facets;  ///< about the leaf's middle
   std::uint32_t count;
@@ -29,11 +30,12 @@ struct LeafQuery {
 
 inline constexpr float kFarSquare = 3.0e38F;
 
-/// Cubes of 4^3 and 2^3 voxels drop the triangles that are nearest to none of their voxels; eight
-/// voxels at a time. Squares are off by some 1e-6 of a voxel times the distance.
+/// Cubes of 4^3 and then 2^3 voxels drop the triangles that are nearest to none of their voxels;
+/// eight voxels are computed at a time. The error of a square is some 1e-6 voxel times the
+/// distance.
 void findSquares(const LeafQuery& query) noexcept;
 
-/// What that chooses from.
+/// The variant for every processor, one of those that findSquares() chooses from.
 void findSquaresBase(const LeafQuery& query) noexcept;
 #if defined(__x86_64__)
 void findSquaresAvx2(const LeafQuery& query) noexcept;

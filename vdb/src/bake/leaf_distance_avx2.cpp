@@ -1,4 +1,4 @@
-// The search for processors with AVX2 and FMA.
+// The variant of the search for processors with AVX2 and FMA.
 
 #if defined(__x86_64__)
 

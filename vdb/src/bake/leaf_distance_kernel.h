@@ -1,6 +1,6 @@
-// The search of leaf_distance.h over eight lanes: a kernel, as simd.h says. None of the standard
-// library's code is in it, so that no inline function of another header is compiled for more than
-// the least processor.
+// The search of leaf_distance.h over eight lanes: a kernel, as simd.h says. It uses no code of the
+// standard library, so that no inline function of another header is compiled for a newer processor
+// than the least one.
 
 #include "bake/leaf_distance.h"
 #include "simd.h"
@@ -38,14 +38,14 @@ PALPATE_KERNEL Lanes squaresOf(const Facet& f, const Lanes& x, const Lanes& y,
     least = n == 0 ? square : min(least, square);
   }
   const Lanes height = planeOf(f.normal, all(f.normal[3]), x, y, z);
-  // Within all sides it is none. Beside the longest, or else rounding could take the way beyond a
-  // needle's tip for its inside.
+  // A point within all sides is over the triangle. The longest side is tested as well: without it
+  // rounding could put a point beyond a needle's tip inside.
   const Lanes in_plane =
       whereLess(outermost, zero, whereLess(zero, beyond_longest, least, zero), least);
   return fma(height, height, in_plane);
 }
 
-/// The middles of the eight parts of a cube.
+/// The centers of the eight parts of a cube.
 struct Eight {
   Lanes x, y, z;
 };
@@ -54,15 +54,15 @@ PALPATE_KERNEL Eight eightAbout(float x, float y, float z, float step) noexcept 
   return {xSigns(step) + all(x), ySigns(step) + all(y), zSigns(step) + all(z)};
 }
 
-/// Facets of each of the eight parts of a cube, in lists of `stride`.
+/// A list of facets for each of the eight parts of a cube, `stride` entries apart.
 struct Lists {
   std::uint32_t* lists;
   std::size_t stride;
   std::uint32_t counts[8];
 };
 
-/// Of `count` facets, those within reach of each part; `reach` is its half diagonal. From nullptr:
-/// all.
+/// Selects, of `count` facets, those within reach of each part; `reach` is the part's half
+/// diagonal. `from` is the list to select from; nullptr: all facets.
 PALPATE_KERNEL void select(const LeafQuery& q, const std::uint32_t* from, std::uint32_t count,
                            const Eight& at, float reach, float* squares, Lists& to) noexcept {
   Lanes least = all(kFarSquare);
@@ -79,7 +79,7 @@ PALPATE_KERNEL void select(const LeafQuery& q, const std::uint32_t* from, std::u
   for (std::uint32_t n = 0; n < count; ++n) {
     const std::uint32_t name = from == nullptr ? n : from[n];
     const std::uint32_t near = atMost(load(squares + std::size_t{8} * n), limit);
-    // Lists are written before it is known that an entry stays: cheaper than a jump.
+    // An entry is written before it is known whether it stays: cheaper than a branch.
     for (std::size_t part = 0; part < 8; ++part) {
       to.lists[part * to.stride + to.counts[part]] = name;
       to.counts[part] += near >> part & 1U;
@@ -87,7 +87,7 @@ PALPATE_KERNEL void select(const LeafQuery& q, const std::uint32_t* from, std::u
   }
 }
 
-/// Writes what was found for the eight voxels of a cube of 2^3 to their places.
+/// Writes the results for the eight voxels of a cube of 2^3 to their places.
 PALPATE_KERNEL void scatter(const Lanes& squares, float* corner) noexcept {
   float found[8];
   store(squares, found);
@@ -95,7 +95,7 @@ PALPATE_KERNEL void scatter(const Lanes& squares, float* corner) noexcept {
 }
 
 PALPATE_ENTRY void searchLeaf(const LeafQuery& q) noexcept {
-  constexpr float kReachFour = 2.598077F;  // [voxels] half diagonals: of the voxels of 4^3
+  constexpr float kReachFour = 2.598077F;  // [voxels] half diagonal of the voxel centers of 4^3
   constexpr float kReachTwo = 0.8660254F;  // and of 2^3
   for (int n = 0; n < 512; ++n) q.squares[n] = kFarSquare;
   Lists nearby{q.nearby, std::size_t{q.count} + 1, {}};

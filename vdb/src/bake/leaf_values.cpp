@@ -10,8 +10,8 @@ namespace {
 
 using Flags = std::array<std::uint8_t, PointBatch::kCount>;
 
-/// Bit n of the result is that of flag n, 0 or 1. Eight at a time: the product puts flag n of them
-/// at bit 56 + n, and no two terms of it at one place.
+/// Bit n of the result is flag n, which is 0 or 1. Eight flags at a time: the multiplication moves
+/// flag n of the eight to bit 56 + n, and no two of its terms meet at one bit.
 std::uint64_t bitsOf(const Flags& flags) noexcept {
   std::uint64_t bits = 0;
   for (std::size_t group = 0; group < 8; ++group) {

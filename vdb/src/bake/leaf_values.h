@@ -1,5 +1,5 @@
 #pragma once
-/// The voxels of one leaf while they are found, a cube of 4^3 at a time.
+/// The voxels of one leaf while their values are computed, a cube of 4^3 at a time.
 
 #include <array>
 #include <cstdint>
@@ -21,8 +21,8 @@ struct LeafValues {
   /// One value for a cube, outside the band. `local` is its first voxel in the leaf.
   void fill(const openvdb::Coord& local, float value) noexcept;
 
-  /// Distances [m], z fastest. In the band are those below `background` [units]; the others become
-  /// that, with their sign.
+  /// Stores distances [m], z fastest. Those below `background` [units] are in the band; the others
+  /// become the background, with their sign.
   void store(const openvdb::Coord& local, const ValueBatch& distances, double units_per_meter,
              float background) noexcept;
 

@@ -1,4 +1,4 @@
-// What is said about places that a grid has lost.
+// Messages about places that a grid has lost.
 #include <algorithm>
 
 #include "bake/lost_plates.h"
@@ -40,7 +40,7 @@ std::string LostPlaces::wiresAndCrumbs(const BakePlan& plan) const {
   for (const LostPlace& place : places_) {
     if (place.shape == LostShape::kPlate) continue;
     std::vector<LostPlace>& found = place.shape == LostShape::kWire ? wires : crumbs;
-    // Seen from several leaves, it is still one.
+    // Seen from several leaves, it is still one place.
     const auto same = std::find_if(found.begin(), found.end(), [&](const LostPlace& other) {
       return glm::distance(other.where, place.where) < kGoesOn * plan.voxel;
     });
@@ -56,7 +56,7 @@ std::string LostPlaces::wiresAndCrumbs(const BakePlan& plan) const {
         [](const LostPlace& a, const LostPlace& b) { return a.thickness < b.thickness; }));
   };
   std::string text;
-  // A long one is seen here and there, so that how many there are is not known.
+  // A long wire is found at several places, so that the number of wires is not known.
   if (!wires.empty()) text = "wires, the thickest " + thickest(wires);
   if (crumbs.empty()) return text;
   if (!text.empty()) text += "; ";

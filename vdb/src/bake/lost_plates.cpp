@@ -16,8 +16,8 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 
 constexpr int kDepths = 4;
 
-/// Whether a shape may have parts thinner than `length`: what solids of such a feature size are
-/// united from has none.
+/// Whether a shape may have parts thinner than `length`. A union of solids whose feature size is
+/// larger has none.
 bool mayBeThin(const Field& field, double length) {
   const FieldStructure structure = field.structure();
   switch (structure.kind) {
@@ -43,12 +43,12 @@ class Search {
         plan_(plan),
         box_(box) {}
 
-  /// From now on, what this grid holds is not lost.
+  /// From now on, parts that this grid holds do not count as lost.
   void lookInto(const LevelSet& grid) { grid_ = gridField(grid, Sampler::kAccessor); }
 
   [[nodiscard]] LostPlaces in(const Leaf& leaf) const {
-    // What decides at all points that are looked at from here; of fields that are not distances,
-    // these may be anywhere.
+    // Keep the operands that decide the value at all points that are looked at from this leaf;
+    // without distances, these points may be anywhere.
     constexpr double kReach = 0.5 * 1.7320508075688774 * 7.0 + kBySurface + kHeld + kGoesOn + 0.1;
     const openvdb::Coord first = leaf.origin();
     const Vec3 center = (Vec3(first.x(), first.y(), first.z()) + Vec3(3.5)) * plan_.voxel;
@@ -60,7 +60,7 @@ class Search {
     if (parts_.isUnionOf(part, [&](const Field& field) { return !mayBeThin(field, held); })) {
       return lost;
     }
-    // What is outside the band is further off.
+    // Voxels outside the band are farther off.
     const auto near = static_cast<float>(kBySurface * plan_.voxel / plan_.meters_per_unit);
     const float* const values = leaf.buffer().data();
     for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
@@ -72,14 +72,14 @@ class Search {
   }
 
  private:
-  /// From a point by the surface: down to it, and on through the shape.
+  /// From a point beside the surface: down to the surface, and on through the shape.
   void look(const FieldPart& part, const Vec3& p, LostPlaces& lost) const noexcept {
     const FieldSample here = parts_.sample(part, p);
     const double slope = glm::length(here.gradient);
     if (!here.in_band || !(slope > 0.0)) return;
     const Vec3 in = -here.gradient / slope;
     const Vec3 foot = p + here.value / slope * in;
-    // A ball inside that holds all the depths below.
+    // A ball inside the shape that contains all the depths below.
     constexpr double kBall = 0.5 * (1.0 - 1.0 / kDepths) * kHeld;
     const double ball = kBall * plan_.voxel;
     if (has_distances_ &&
@@ -92,7 +92,7 @@ class Search {
       const double depth = kHeld * i / kDepths * plan_.voxel;
       (parts_.value(part, foot + depth * in) < 0.0 ? inside : outside) = depth;
     }
-    if (outside == 0.0) return;  // thick
+    if (outside == 0.0) return;  // thick enough
     for (int i = 0; i < 12; ++i) {
       const double middle = 0.5 * (inside + outside);
       (parts_.value(part, foot + middle * in) < 0.0 ? inside : outside) = middle;
@@ -121,7 +121,7 @@ class Search {
            is_inside(middle + far * v) && is_inside(middle - far * v);
   }
 
-  /// The field as ThinPart asks for it; all in voxels.
+  /// Answers ThinPart's questions about the field; all lengths in voxels.
   class Thin {
    public:
     Thin(const Search& search, double thickness)
@@ -166,7 +166,7 @@ class Search {
 
   FieldParts parts_;
   bool has_distances_;
-  FieldPtr grid_;  ///< null: taken as if it held nothing
+  FieldPtr grid_;  ///< null: as if it held nothing
   const BakePlan& plan_;
   const std::optional<Box3>& box_;
 };
@@ -189,7 +189,7 @@ std::string refuseLostPlates(const Field& field, const LevelSet& grid, const Bak
                       });
     return found;
   };
-  // A field of the grid is worth its making only where something is thin.
+  // A field of the grid is made only if something is thin.
   std::vector<LostPlaces> found = search_all();
   std::vector<const Leaf*> thin;
   for (std::size_t i = 0; i < leaves.size(); ++i) {

@@ -1,4 +1,4 @@
-// The search of lost_plates.h from the triangles of a mesh.
+// The search of lost_plates.h, started from the triangles of a mesh.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,17 +14,18 @@ namespace palpate::vdb {
 namespace {
 
 /// [voxels] Depths that are looked at first: where the grid is negative at all of them it has no
-/// hole. Its values in a plate are least in the middle, so that a hole shows at the next of them
-/// too.
+/// hole. Inside a plate its values are least in the middle, so that a hole also shows at the next
+/// of these depths.
 constexpr std::array<double, 3> kFirstDepths{0.2, 0.5, 0.8};
-/// [voxels] A way down along a direction that is known no better ends at its beginning.
+/// [voxels] Tolerance for a search along a direction that is not known more accurately.
 constexpr double kHair = 1e-4;
 
-/// Cosine between the way down and the wall opposite: others are the two sides of an edge.
+/// Cosine between the search direction and the opposite wall's normal; with a smaller one the walls
+/// are the two sides of an edge.
 constexpr double kOpposite = 0.7;
-/// The same of a wire, which may have three sides.
+/// The same for a wire, which may have three sides.
 constexpr double kOppositeOfWire = 0.4;
-/// [voxels] Places nearer to one that is not a wire are none either.
+/// [voxels] Places this near to a place that is not a wire are not wires either.
 constexpr double kSamePlace = 0.5;
 
 struct Place {
@@ -56,7 +57,7 @@ Vec3 closestOn(const Corners& t, const Vec3& p) noexcept {
   return over ? p - glm::dot(p - t[0], normal) / square * normal : best;
 }
 
-/// Looks at the grid of one thread.
+/// Searches the grid; one object for each thread.
 class Search {
  public:
   Search(const BakedMesh& mesh, const LevelSet& grid, const BakePlan& plan)
@@ -74,7 +75,7 @@ class Search {
   }
 
  private:
-  /// Whether the grid alone goes down from a voxel as into a thick part.
+  /// Whether the grid's values below a voxel decrease as in a thick part, so that nothing is lost.
   [[nodiscard]] bool isHeldBy(const openvdb::Coord& at) const {
     const auto slope = [&](int x, int y, int z) {
       return 0.5 * (values_.at(at.offsetBy(x, y, z)) - values_.at(at.offsetBy(-x, -y, -z)));
@@ -115,13 +116,14 @@ class Search {
     goDown(foot, -normal, triangles, places);
   }
 
-  /// From an edge of less than a right angle the way on is not always into the part, but halfway
-  /// between the walls that meet there it is: how wires of three sides are found.
+  /// At an edge of less than a right angle, the normal of a wall does not always lead into the
+  /// part; the direction halfway between the walls that meet there does. This finds wires of three
+  /// sides.
   void goDownFromEdge(const Vec3& p, const Vec3& foot, double distance,
                       std::span<const std::uint32_t> triangles, std::vector<Place>& places) const {
     Vec3 sum(0.0);
-    double most = 0.0;  // of the walls' normals, all turned the same way, the one most towards the
-                        // voxel tells which
+    double most = 0.0;  // the normal most towards the voxel: its sign tells whether the normals
+                        // point out of the part
     for (const std::uint32_t triangle : triangles) {
       const Corners t = cornersOf(mesh_.walls, triangle);
       if (glm::distance(closestOn(t, p), p) > distance + kHair) continue;
@@ -134,8 +136,8 @@ class Search {
     if (glm::length(out) > kHair) goDown(foot, -glm::normalize(out), triangles, places, true);
   }
 
-  /// Looks down to the wall opposite, and at what the grid has half-way; false if there is no such
-  /// wall.
+  /// Follows `in` to the opposite wall, and checks the grid's value half-way; false if there is no
+  /// such wall.
   bool goDown(const Vec3& foot, const Vec3& in, std::span<const std::uint32_t> triangles,
               std::vector<Place>& places, bool from_edge = false) const {
     double thickness = kHeld;
@@ -164,7 +166,7 @@ bool isPlate(const Place& place, const MeshSolid& solid) {
   const Vec3 across = std::fabs(place.in.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
   const Vec3 u = glm::normalize(glm::cross(place.in, across));
   const Vec3 v = glm::cross(place.in, u);
-  // In steps, lest another part beyond a gap is taken for the same.
+  // In steps, so that another part beyond a gap is not taken for the same one.
   constexpr int kSteps = 8;
   for (const Vec3& way : {u, -u, v, -v}) {
     for (int step = 1; step <= kSteps; ++step) {
@@ -174,7 +176,7 @@ bool isPlate(const Place& place, const MeshSolid& solid) {
   return true;
 }
 
-/// Of the places of one leaf: every plate, and one wire or crumb.
+/// Of the places of one leaf: every plate, and at most one wire or crumb.
 LostPlaces lostAmong(const std::vector<Place>& places, const MeshSolid& solid,
                      const BakePlan& plan) {
   LostPlaces lost;

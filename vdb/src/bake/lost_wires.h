@@ -1,5 +1,5 @@
 #pragma once
-/// Wires and crumbs that a grid has lost, told from any solid that answers three questions.
+/// Finds wires and crumbs that a grid has lost, in any solid that answers three questions.
 
 #include <algorithm>
 #include <cmath>
@@ -11,15 +11,15 @@
 
 namespace palpate::vdb {
 
-/// Follows a thin part from its middle along itself. Lengths and places in voxels.
+/// Follows a thin part along its length, starting in its middle. Lengths and places in voxels.
 ///
 /// `Solid` has
 ///   double wayOut(const Vec3& from, const Vec3& along): to the next wall, infinite if that is far;
 ///   bool isInside(const Vec3&): of the solid;
 ///   bool isHeld(const Vec3&): by the grid.
 ///
-/// A cone is not a wire: the tip of a needle of 5 degrees and more may be lost, as the last voxels
-/// of an edge.
+/// A cone does not count as a wire: the tip of a needle of 5 degrees and more may be lost, like the
+/// last voxels of an edge.
 template <class Solid>
 class ThinPart {
  public:
@@ -28,11 +28,12 @@ class ThinPart {
   /// `middle` is in the solid, halfway through it along the unit vector `in`.
   [[nodiscard]] std::optional<LostShape> lostAt(const Vec3& middle, const Vec3& in) {
     Place start{middle, in, longestAcross(middle, in)};
-    // The cut square to the way along, from where it is widest: `in` may go through it aslant.
+    // The cross section perpendicular to the part's direction, from where it is widest: `in` may
+    // cross it at an angle.
     const Vec3 widest = longestAcross(middle, start.along);
     start.in = glm::cross(widest, start.along);
-    // Halfway along two directions is not yet the middle of a cut with corners; from there on, the
-    // way that it takes is the part's own.
+    // The middle along two directions is not yet the middle of a cross section with corners.
+    // Repeat; from the second time on, the direction is that of the part itself.
     for (int n = 0; n < 4; ++n) {
       if (!center(start)) return {};
     }
@@ -51,10 +52,10 @@ class ThinPart {
   }
 
  private:
-  /// Across that, plates look at their own four sides.
+  /// Parts wider than this are left to the search for plates, which looks at four sides itself.
   static constexpr double kWide = 2.0 * kGoesOn;
-  /// Of the thicknesses at both ends of four voxels: less is a tip. One of 5 degrees is lost from
-  /// where it is 1.5 voxels thick, and has 0.79 there.
+  /// Ratio of the thicknesses at both ends of four voxels; a smaller one means a tip. A tip of 5
+  /// degrees is lost from where it is 1.5 voxels thick, and has a ratio of 0.79 there.
   static constexpr double kWireTaper = 0.8;
   static constexpr double kStep = 0.25;
 
@@ -65,10 +66,10 @@ class ThinPart {
   };
   struct Place {
     Vec3 middle;
-    Vec3 in;     ///< across, where it is thin
-    Vec3 along;  ///< square to it
+    Vec3 in;     ///< across the part, where it is thin
+    Vec3 along;  ///< perpendicular to `in`
     double thickness = 0.0;
-    double width = 0.0;  ///< across both
+    double width = 0.0;  ///< perpendicular to both
   };
 
   [[nodiscard]] double chord(const Vec3& from, const Vec3& along) const {
@@ -76,7 +77,7 @@ class ThinPart {
            std::min(solid_.wayOut(from, -along), kWide);
   }
 
-  /// The direction square to `axis` in which the part is longest.
+  /// The direction perpendicular to `axis` in which the part is longest.
   [[nodiscard]] Vec3 longestAcross(const Vec3& middle, const Vec3& axis) const {
     const Vec3 aside = std::fabs(axis.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
     const Vec3 u = glm::normalize(glm::cross(axis, aside));
@@ -102,7 +103,7 @@ class ThinPart {
     return at(best);
   }
 
-  /// Into the middle of the cut square to the way along; false where that is wide.
+  /// Moves into the middle of the cross section; false where that is wide.
   [[nodiscard]] bool center(Place& place) const {
     const Vec3 across = glm::cross(place.in, place.along);
     const double left = solid_.wayOut(place.middle, across);
@@ -138,7 +139,7 @@ class ThinPart {
       if (!solid_.isInside(place.middle)) return {End::kFree, place.thickness};
       if (!center(place)) return {End::kWide, place.thickness};
       is_held_ = is_held_ || isCutHeld(place);
-      // As it bends.
+      // Follow its bends.
       const Vec3 along =
           unitOr(place.along + unitOr(place.middle - before, place.along), place.along);
       if (glm::dot(along, place.along) < 0.5) return {End::kFree, place.thickness};

@@ -1,5 +1,5 @@
 #pragma once
-/// A mesh that became a grid, as the search for lost wires asks for it.
+/// A mesh that became a grid, in the form in which the search for lost wires asks for it.
 
 #include "bake/grid_values.h"
 #include "bake/lost_plates.h"
@@ -14,7 +14,7 @@ using Corners = std::array<Vec3, 3>;
   return {solid.vertices[a], solid.vertices[b], solid.vertices[c]};
 }
 
-/// How far along a ray a triangle is met, from either side; sides belong to it.
+/// Distance along a ray to a triangle, hit from either side; the sides belong to it.
 [[nodiscard]] std::optional<double> wayTo(const Corners& triangle, const Vec3& from,
                                           const Vec3& along) noexcept;
 
@@ -24,7 +24,7 @@ class MeshSolid {
   MeshSolid(const BakedMesh& mesh, const SolidInside& inside, const GridValues& values)
       : mesh_(mesh), inside_(inside), count_(inside.counter()), values_(values) {}
 
-  /// Walls out of reach of the band are not known, and taken as far.
+  /// Walls beyond the reach of the band are not known, and count as far away.
   [[nodiscard]] double wayOut(const Vec3& from, const Vec3& along) const;
   [[nodiscard]] bool isInside(const Vec3& p) const { return inside_.at(p, count_); }
   [[nodiscard]] bool isHeld(const Vec3& p) const { return values_.at(p) < 0.0; }

@@ -12,7 +12,8 @@ constexpr std::size_t kPoints = 64;
 constexpr auto kEnough = std::chrono::milliseconds(1);
 constexpr int kFewestPasses = 3;
 
-/// Points in `box`, evenly scattered (R. Roberts' additive recurrence), moved towards the surface.
+/// Points in `box`, evenly scattered (R. Roberts' additive recurrence), then moved towards the
+/// surface.
 std::array<Vec3, kPoints> pointsNearSurface(const Field& field, const Box3& box) {
   std::array<Vec3, kPoints> points{};
   Vec3 share(0.5);
@@ -47,7 +48,7 @@ double queryNanoseconds(const Field& field, const Box3& box) {
     const std::chrono::duration<double, std::nano> took = Clock::now() - before;
     least = std::min(least, took.count() / static_cast<double>(kPoints));
   }
-  // What was carried along is too small to matter, but the compiler cannot know.
+  // The carried value is too small to matter, but the compiler cannot know that.
   return carried.x > 1.0 ? 0.0 : least;
 }
 

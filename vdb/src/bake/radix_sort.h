@@ -1,5 +1,5 @@
 #pragma once
-/// Sorting by whole numbers, stable, in time linear in the count.
+/// Stable sorting by integer keys, in time linear in the count.
 
 #include <array>
 #include <bit>

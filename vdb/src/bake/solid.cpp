@@ -13,14 +13,14 @@
 namespace palpate::vdb {
 namespace {
 
-/// A lid may have this share of the closed part's area: beyond, the form does not tell where a wall
-/// was.
+/// The largest share of the closed part's area that a lid may have: beyond it, the shape does not
+/// tell where the missing wall was.
 constexpr double kMostLid = 0.125;
-/// [voxels] An open part that is no larger than this, or no wider than a quarter of a voxel on the
-/// mean, is a speck: closed by whatever lid, a grid would hardly show it.
+/// [voxels] An open part no larger than this, or no wider than a quarter of a voxel on the mean, is
+/// a speck: whatever lid closed it, a grid would hardly show it.
 constexpr double kSpeck = 4.0;
 constexpr double kSliver = 0.25;
-/// A vertex farther out than this many times the size of what all others fill is a slip.
+/// A vertex farther out than this many times the extent of all others is taken for a mistake.
 constexpr double kFar = 1000.0;
 
 void requireUsable(const Mesh& mesh) {
@@ -52,9 +52,9 @@ void refuseOutliers(const Mesh& mesh) {
   for (int axis = 0; axis < 3; ++axis) {
     values.clear();
     for (const Vec3& p : mesh.vertices) {
-      if (isFinite(p)) values.push_back(p[axis]);  // a vertex without faces need not be
+      if (isFinite(p)) values.push_back(p[axis]);  // a vertex that no face uses need not be finite
     }
-    // All but a fiftieth on each side; of few vertices, more.
+    // Leaves out a fiftieth on each side; more if there are few vertices.
     const auto fringe = static_cast<std::ptrdiff_t>(
         std::max<std::size_t>(values.size() / 50, std::min<std::size_t>(values.size() / 3, 6)));
     const auto lo = values.begin() + fringe;
@@ -80,7 +80,7 @@ void refuseOutliers(const Mesh& mesh) {
   }
 }
 
-/// Of triangles with the same corners only the first stays, whichever way they are turned.
+/// Of triangles with the same corners only the first is kept, whichever way they are turned.
 void dropDoubles(std::vector<Triangle>& triangles, const std::vector<Side>& sides) {
   std::vector<bool> doubled(triangles.size(), false);
   const auto third = [&](const Side& side) {
@@ -135,7 +135,7 @@ bool isConsistent(const std::vector<Side>& sides) {
   return consistent;
 }
 
-/// Names the part of each triangle, by vertices joined.
+/// Gives each triangle the number of its part; parts are connected by vertices.
 void findParts(Solid& solid) {
   std::vector<std::uint32_t> parent(solid.vertices.size());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -167,7 +167,7 @@ void findParts(Solid& solid) {
   }
 }
 
-/// [voxels^2] Of each part, its lids: triangles from `first_lid` on.
+/// [voxels^2] For each part the area of its lids: the triangles from `first_lid` on.
 std::vector<double> lidsOf(const Solid& solid, std::size_t first_lid) {
   std::vector<double> lids(solid.parts.size(), 0.0);
   for (std::size_t t = first_lid; t < solid.triangles.size(); ++t) {
@@ -176,15 +176,15 @@ std::vector<double> lidsOf(const Solid& solid, std::size_t first_lid) {
   return lids;
 }
 
-/// Whether an open part is none that a grid could show.
+/// Whether an open part is too small for a grid to show.
 bool isSpeck(const SolidPart& part, double lid) {
   if (lid <= kMostLid * part.area) return false;
   const double length = glm::length(part.box.size());
   return length <= kSpeck || part.area - lid <= kSliver * length;
 }
 
-/// Takes the triangles of open specks away, with their lids, unless nothing else is there.
-/// `first_lid` and `holes` are those of what is left.
+/// Removes the triangles of open specks, with their lids, unless nothing else is there. Adjusts
+/// `first_lid` and `holes` to the triangles that are left.
 void dropSpecks(Solid& solid, std::vector<Hole>& holes, std::size_t& first_lid,
                 std::vector<bool>& turned, double voxel) {
   const std::vector<double> lids = lidsOf(solid, first_lid);
@@ -226,7 +226,8 @@ void dropSpecks(Solid& solid, std::vector<Hole>& holes, std::size_t& first_lid,
   findParts(solid);
 }
 
-/// Lids must be small beside what they close. @throws Error naming the largest hole.
+/// Lids must be small compared with the part that they close. @throws Error naming the largest
+/// hole.
 void requireSmallLids(const Mesh& mesh, const Solid& solid, const std::vector<Hole>& holes,
                       std::size_t first_lid, double voxel) {
   const std::vector<double> lids = lidsOf(solid, first_lid);

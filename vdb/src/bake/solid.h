@@ -1,5 +1,5 @@
 #pragma once
-/// A mesh made ready for baking: checked, welded, turned alike, its holes closed.
+/// A mesh prepared for baking: checked, welded, turned alike, its holes closed.
 
 #include <array>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace palpate::vdb {
 
-/// Triangles that hang together by shared vertices.
+/// Triangles connected by shared vertices.
 struct SolidPart {
   double volume = 0.0;        ///< [voxels^3] signed
   double area = 0.0;          ///< [voxels^2]
@@ -20,21 +20,21 @@ struct SolidPart {
   Box3 box;                   ///< [voxels]
 };
 
-/// Along every edge as many triangles run one way as the other, so that the winding number is whole
-/// and the same on any path to a point.
+/// Along every edge as many triangles run one way as the other, so that the winding number is an
+/// integer and does not depend on the ray along which it is counted.
 struct Solid {
   std::vector<Vec3> vertices;  ///< [voxels]
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> part_of;  ///< of each triangle
+  std::vector<std::uint32_t> part_of;  ///< for each triangle
   std::vector<SolidPart> parts;
-  bool was_closed = true;  ///< as it came: two triangles on each edge, turned alike
+  bool was_closed = true;  ///< as it was read: two triangles on each edge, turned alike
   std::string dropped;     ///< "3 open fragments, ..."; empty if there were none
 };
 
-/// Unless `sign` says what closes them, parts that are open and too small for the voxels to hold
-/// are dropped.
-/// @throws Error (kInput): no faces, index out of range, vertex not finite or far from all others,
-/// open by more than its form tells (mesh.open; only if `sign` is kVote); each with a place.
+/// Drops open parts that are too small for the voxels to hold, unless `sign` says what closes them.
+/// @throws Error (kInput), each with a place: no faces, index out of range, vertex not finite or
+/// far from all others, or holes so large that the shape does not tell where the wall was
+/// (mesh.open; only if `sign` is kVote).
 [[nodiscard]] Solid makeSolid(const Mesh& mesh, double voxel, MeshSign sign);
 
 /// Only checked, welded and without doubled triangles: for a shell about the surface.

@@ -13,7 +13,7 @@ SolidInside::SolidInside(const Solid& solid, const Columns& columns)
   for (const Vec3& v : solid.vertices) box_.include(v);
   double area = 0.0;
   for (const Triangle& t : solid.triangles) area += areaOf(solid.vertices, t);
-  // As large as a triangle, but not so small that large triangles fill the memory.
+  // Cells about as large as a triangle, but not so small that large triangles fill the memory.
   cell_ = std::max(1.0, std::sqrt(area / static_cast<double>(solid.triangles.size())));
   const double most = 4.0 * static_cast<double>(solid.triangles.size()) + 1e6;
   cell_ = std::max(cell_, std::sqrt(box_.size().x * box_.size().y / most));

@@ -15,7 +15,8 @@ struct Entry {
   std::uint32_t triangle;
 };
 
-/// The leaves about one triangle, from cubes of them down to single ones.
+/// Visits the leaves about one triangle: first cubes of leaves, then smaller ones, down to single
+/// leaves.
 class Walk {
  public:
   Walk(const Vec3& a, const Vec3& b, const Vec3& c, double half_width, const Coord& lo,
@@ -36,7 +37,7 @@ class Walk {
     }
     int side = 8;
     while (side < (1 << 29) && largest(reach.size()) > 3.0 * side) side *= 2;
-    // From voxel centers: a cube of voxels from x on reaches to x + side - 1.
+    // Cubes reach from voxel center to voxel center: one that begins at x reaches to x + side - 1.
     const auto down = [&](double v) { return static_cast<int>(std::ceil(v)) & ~(side - 1); };
     for (int x = down(reach.lo.x - side + 1); x <= reach.hi.x; x += side) {
       for (int y = down(reach.lo.y - side + 1); y <= reach.hi.y; y += side) {
@@ -50,8 +51,8 @@ class Walk {
  private:
   static constexpr int kMostLeaves = 6;
 
-  /// For a small triangle, leaf by leaf; what depends on one axis only is found once for each row
-  /// of them.
+  /// For a small triangle, leaf by leaf; terms that depend on one axis only are computed once for
+  /// each row of leaves.
   void listAll(const Box3& reach) {
     struct Row {
       double gap, away;
@@ -99,7 +100,7 @@ class Walk {
   void visit(const Coord& origin, int side) {
     const double half = 0.5 * (side - 1);
     const Vec3 middle = Vec3(origin.x(), origin.y(), origin.z()) + half;
-    // A billionth covers the rounding.
+    // A relative billionth covers the rounding.
     const double slack =
         1e-9 * (1.0 + std::abs(middle.x) + std::abs(middle.y) + std::abs(middle.z));
     if (std::abs(glm::dot(normal_, middle - corner_)) > half * tilt_ + half_width_ + slack) return;
@@ -122,7 +123,7 @@ class Walk {
   double half_width_;
   Vec3 corner_;
   Vec3 normal_{0.0};
-  double tilt_;  ///< reach of a cube of half side 1 along the normal
+  double tilt_;  ///< how far a cube of half side 1 reaches along the normal
   Box3 box_;
   const Coord& lo_;
   const std::array<int, 3>& bits_;
@@ -141,7 +142,7 @@ TriangleBins::TriangleBins(const std::vector<Vec3>& vertices,
     bits_[static_cast<std::size_t>(axis)] =
         bitsFor(static_cast<std::uint64_t>(range.max()[axis] - lo_[axis] + 16) >> 3);
   }
-  // Pieces of the list in its order, so that each leaf's triangles come in theirs.
+  // The list is divided in its order, so that each leaf's triangles stay in order too.
   constexpr std::size_t kPiece = 4096;
   std::vector<std::vector<Entry>> parts((triangles.size() + kPiece - 1) / kPiece);
   parallelWithProgress(parts.size(), progress, "bake mesh: finding the surface", 0.15, 0.2,

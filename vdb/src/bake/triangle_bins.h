@@ -1,5 +1,5 @@
 #pragma once
-/// Which triangles the band of each leaf can touch.
+/// Finds the triangles that the band of each leaf can touch.
 
 #include <openvdb/openvdb.h>
 
@@ -16,8 +16,8 @@ namespace palpate::vdb {
 /// Leaves in a fixed order, each with its triangles in rising order.
 class TriangleBins {
  public:
-  /// `vertices` [voxels]; `range` holds every voxel that the band can touch, less than 2^24 along
-  /// each axis. @throws Error (kCancelled).
+  /// `vertices` [voxels]; `range` holds every voxel that the band can touch; it is less than 2^24
+  /// long on each axis. @throws Error (kCancelled).
   TriangleBins(const std::vector<Vec3>& vertices,
                const std::vector<std::array<std::uint32_t, 3>>& triangles,
                const openvdb::CoordBBox& range, const BakePlan& plan, const Progress& progress);
@@ -32,9 +32,9 @@ class TriangleBins {
 
  private:
   openvdb::Coord lo_;
-  std::array<int, 3> bits_{};             ///< of a leaf's place along each axis, in its key
-  std::vector<std::uint64_t> keys_;       ///< of the leaves, rising
-  std::vector<std::size_t> first_;        ///< of each leaf's triangles, and one more
+  std::array<int, 3> bits_{};             ///< number of bits of a leaf's coordinates in its key
+  std::vector<std::uint64_t> keys_;       ///< of the leaves, in rising order
+  std::vector<std::size_t> first_;        ///< index of each leaf's first triangle, and an end
   std::vector<std::uint32_t> triangles_;  ///< leaf by leaf
 };
 

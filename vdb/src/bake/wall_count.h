@@ -1,5 +1,5 @@
 #pragma once
-/// Counting the walls that a line along z meets.
+/// Counts the walls that a line along z meets.
 
 #include <algorithm>
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace palpate::vdb {
 
 struct WallHit {
   double z = 0.0;
-  int entered = 0;  ///< walls entered on the way up, less walls left; 0: no wall here
+  int entered = 0;  ///< walls entered on the way up minus walls left; 0: no wall here
 };
 
 /// Twice the area of a, b and (x, y) seen along z; positive if (x, y) is left of a -> b.
@@ -20,9 +20,9 @@ struct WallHit {
   return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
 }
 
-/// What a side adds to the winding number of its triangle about (x, y): whether it crosses the line
-/// from there towards +x, upwards or downwards. Both triangles of an edge compute the very same
-/// number, so that the sum over a closed surface is zero whatever the rounding.
+/// The contribution of a side to the winding number of its triangle about (x, y): whether it
+/// crosses the line from there towards +x, upwards or downwards. Both triangles of an edge compute
+/// the very same number, so that the sum over a closed surface is zero whatever the rounding.
 [[nodiscard]] inline int crossesUpwards(const Vec3& from, const Vec3& to, double x,
                                         double y) noexcept {
   if (from.y <= y && to.y > y) return leftOf(from, to, x, y) > 0.0 ? 1 : 0;
@@ -30,7 +30,7 @@ struct WallHit {
   return 0;
 }
 
-/// The wall a, b, c on the line through (x, y).
+/// Where the line through (x, y) meets the wall a, b, c.
 [[nodiscard]] inline WallHit hitWall(const Vec3& a, const Vec3& b, const Vec3& c, double x,
                                      double y) noexcept {
   const int turns =
@@ -43,14 +43,15 @@ struct WallHit {
   const double lo = std::min({a.z, b.z, c.z});
   const double hi = std::max({a.z, b.z, c.z});
   const double z = sum != 0.0 ? (u * a.z + v * b.z + w * c.z) / sum : lo;
-  // Seen from above counterclockwise is the upper side, by which +z leaves the solid.
+  // A wall that is counterclockwise seen from above is an upper side, through which +z leaves the
+  // solid.
   return {std::clamp(z, lo, hi), -turns};
 }
 
-/// Winding numbers of a solid's parts on the way up a line, those that are not zero.
+/// The winding numbers of a solid's parts on the way up a line; only those that are not zero.
 class WallCount {
  public:
-  /// `roles`: of each part, +1 solid and -1 cavity; must outlive the count.
+  /// `roles`: for each part, +1 solid or -1 cavity; must outlive the count.
   explicit WallCount(const std::vector<int>& roles) : roles_(roles) {}
 
   void add(std::uint32_t part, int entered) {

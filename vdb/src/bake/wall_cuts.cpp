@@ -12,13 +12,13 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] What lies as near to a plane or line lies in it. Far above the rounding of places
-/// (1e-12 at ten thousand voxels), and nothing that near to a cut shows in distances.
+/// [voxels] A point this near to a plane or line counts as lying in it. That is far above the
+/// rounding of places (1e-12 at ten thousand voxels), and too near to a cut to show in distances.
 constexpr double kInPlane = 1e-8;
-/// [voxels] Shorter cuts divide nothing.
+/// [voxels] Shorter cuts are ignored.
 constexpr double kShort = 1e-8;
-/// More cuts than that are halved by their place first: cuts along a curve that bends one way would
-/// each leave all others on one side.
+/// If there are more cuts than this, they are first halved by place: cuts along a curve that bends
+/// one way would each leave all others on one side.
 constexpr std::size_t kMany = 32;
 
 /// A triangle's plane, with its sides as lines in it.
@@ -40,7 +40,7 @@ Wall wallOf(const Solid& solid, std::uint32_t triangle) {
   return wall;
 }
 
-/// The part of a cut within the wall, rims included; none if it is but a point.
+/// The part of a cut within the wall, borders included; nothing if it is only a point.
 std::optional<WallCut> within(WallCut cut, const Wall& wall) {
   for (std::size_t n = 0; n < 3; ++n) {
     const double from = glm::dot(wall.out[n], cut.from - wall.corners[n]);
@@ -54,7 +54,7 @@ std::optional<WallCut> within(WallCut cut, const Wall& wall) {
   return cut;
 }
 
-/// Whether a side of `wall` has all of another, that lies in its plane, beyond it.
+/// Whether some side of `wall` has all of another triangle in the same plane beyond it.
 bool isBeside(const Wall& wall, const Corners3& other) {
   for (std::size_t n = 0; n < 3; ++n) {
     const auto is_out = [&](const Vec3& p) {
@@ -65,7 +65,7 @@ bool isBeside(const Wall& wall, const Corners3& other) {
   return false;
 }
 
-/// Adds what `other` cuts of `mine`.
+/// Adds the cuts that `other` makes in `mine`.
 void addCuts(const Solid& solid, std::uint32_t mine, std::uint32_t other, const Wall& wall,
              std::vector<WallCut>& cuts) {
   const Triangle& here = solid.triangles[mine];
@@ -168,14 +168,14 @@ WallCutter::Halves WallCutter::halve(const Polygon& polygon, const std::vector<W
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
     Vec3 along(0.0);
     along[axis] = 1.0;
-    // The axis that the cuts spread most along is not the plane's normal, so that this is not zero.
+    // The cuts spread most along an axis that is not the plane's normal, so that this is not zero.
     across = glm::normalize(along - glm::dot(along, normal) * normal);
     std::vector<double> places;
     for (const WallCut& cut : cuts) places.push_back(glm::dot(across, cut.from + cut.to));
     const auto middle = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
     std::nth_element(places.begin(), middle, places.end());
     place = 0.5 * *middle * across;
-    // Cuts all over each other are not to be cut in halves again and again.
+    // Cuts that all cross each other would be halved again and again without end.
     const auto cut_by_it = std::count_if(cuts.begin(), cuts.end(), crosses);
     by_place = static_cast<std::size_t>(cut_by_it) < cuts.size() / 4;
   }
@@ -225,7 +225,7 @@ WallCutter::Halves WallCutter::halve(const Polygon& polygon, const std::vector<W
 }
 
 void WallCutter::add(const Polygon& polygon, std::vector<Corners3>& pieces) {
-  // Corners are taken off by turns from both ends, so that a round piece does not become a fan of
+  // Corners are removed alternately from both ends, so that a round piece does not become a fan of
   // needles.
   std::size_t low = 0;
   std::size_t high = polygon.size() - 1;

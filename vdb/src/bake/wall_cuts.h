@@ -1,5 +1,5 @@
 #pragma once
-/// Where walls of a solid cross each other, and the pieces that they cut a triangle into.
+/// Where walls of a solid cross each other, and the pieces that the cuts leave of a triangle.
 
 #include <array>
 #include <cstdint>
@@ -11,14 +11,15 @@
 
 namespace palpate::vdb {
 
-/// A stretch [voxels] of a triangle's plane that another triangle passes through, or ends at.
+/// A line segment [voxels] in a triangle's plane where another triangle passes through it, or ends
+/// at it.
 struct WallCut {
   Vec3 from{0.0}, to{0.0};
 };
 
-/// The cuts of every triangle. Triangles are paired by a tree of their boxes: near-linear in their
-/// number and in the length of the lines that they meet along. The result does not depend on the
-/// number of threads.
+/// The cuts of every triangle. Triangles are paired by a tree of their boxes, in time nearly linear
+/// in their number and in the length of the lines along which they meet. The result does not depend
+/// on the number of threads.
 class WallCuts {
  public:
   /// @throws Error (kCancelled).
@@ -27,33 +28,35 @@ class WallCuts {
   [[nodiscard]] std::span<const WallCut> of(std::uint32_t triangle) const noexcept {
     return std::span(cuts_).subspan(first_[triangle], first_[triangle + 1] - first_[triangle]);
   }
-  /// Whether another wall meets it in more than a point; then its neighbors tell nothing of it.
+  /// Whether another wall meets the triangle in more than a point; then its use cannot be taken
+  /// from its neighbors.
   [[nodiscard]] bool isCut(std::uint32_t triangle) const noexcept {
     return first_[triangle] != first_[triangle + 1];
   }
 
  private:
   std::vector<WallCut> cuts_;       ///< triangle by triangle
-  std::vector<std::size_t> first_;  ///< of each triangle's cuts, and one more
+  std::vector<std::size_t> first_;  ///< index of each triangle's first cut, and an end
 };
 
-/// What a piece of a wall is for.
+/// The use of a piece of a wall.
 enum class WallUse : std::uint8_t {
-  kIdle,    ///< the solid, or nothing, is on both sides
-  kNeeded,  ///< the surface
-  kMixed,   ///< partly this, partly that
+  kIdle,    ///< the solid is on both sides, or on neither
+  kNeeded,  ///< part of the surface
+  kMixed,   ///< partly kIdle, partly kNeeded
   kNothing  ///< too thin to be either
 };
 
 using Corners3 = std::array<Vec3, 3>;
 
-/// Cuts a triangle along its cuts and asks `use_at(point, normal)`, kIdle or kNeeded, once for each
-/// piece. Pieces that are needed are added to `pieces` as triangles, unless all of it is one use.
+/// Divides a triangle along its cuts and calls `use_at(point, normal)`, which returns kIdle or
+/// kNeeded, once for each piece. Needed pieces are added to `pieces` as triangles, unless the whole
+/// triangle has one use.
 class WallCutter {
  public:
   using Polygon = std::vector<Vec3>;
 
-  /// Of corners that span an area. `use_at` must outlive the call.
+  /// The corners must span an area. `use_at` must outlive the call.
   template <typename UseAt>
   static WallUse cut(const Corners3& t, std::span<const WallCut> cuts, UseAt& use_at,
                      std::vector<Corners3>& pieces) {
@@ -64,13 +67,13 @@ class WallCutter {
   }
 
  private:
-  /// What is on either side of a line.
+  /// The two parts on either side of a line.
   struct Halves {
     Polygon left, right;
     std::vector<WallCut> left_cuts, right_cuts;
   };
 
-  /// By one of the cuts, or, where there are many, by a line through their middle.
+  /// Divides by one of the cuts, or, if there are many, by a line through their middle.
   static Halves halve(const Polygon& polygon, const std::vector<WallCut>& cuts, const Vec3& normal);
   static void add(const Polygon& polygon, std::vector<Corners3>& pieces);
   /// [voxels] Its least width, to a factor of two.
@@ -99,7 +102,7 @@ class WallCutter {
     return keep(use);
   }
 
-  /// [voxels] Thinner pieces are left out: what is beside them is as near.
+  /// [voxels] Thinner pieces are left out: a neighboring piece is as near.
   static constexpr double kThin = 1e-7;
 };
 

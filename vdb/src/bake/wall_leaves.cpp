@@ -26,14 +26,14 @@ class LeafMaker {
         domain_(domain),
         plan_(plan) {}
 
-  /// Null if no voxel is active.
+  /// The leaf at `origin`; null if no voxel is active.
   [[nodiscard]] std::unique_ptr<BandLeaf> at(const Coord& origin) const {
     const std::int32_t index = leaves_.indexAt(origin);
     const DistanceLeaf* const from =
         index < 0 ? nullptr : &leaves_.all()[static_cast<std::size_t>(index)];
     const bool by_wall = domain_.is_cut && wallReaches(origin);
     if (from == nullptr && !by_wall) return nullptr;
-    // Distances are also known some way beyond the faces, of surface that they cut off.
+    // Distances are also known some way beyond the faces, to surface that they cut off.
     if (domain_.is_cut && !by_wall && isBeyond(origin)) return nullptr;
     auto leaf = std::make_unique<BandLeaf>(origin, plan_.background, false);
     for (std::size_t n = 0; n < kVoxels; ++n) {
@@ -42,7 +42,7 @@ class LeafMaker {
         const double value = testBit(from->inside, n) ? -size : size;
         set(*leaf, n, by_wall ? std::max(value, wallAt(origin, n)) : value);
       } else if (by_wall) {
-        // Out of the field's own band its side is all that counts.
+        // Outside the field's own band only its side counts.
         const double wall = wallAt(origin, n);
         const double out = 2.0 * plan_.band;
         const bool inside =
@@ -53,7 +53,7 @@ class LeafMaker {
     return leaf->isEmpty() ? nullptr : std::move(leaf);
   }
 
-  /// Leaves that a face of the box lies in or near; in order.
+  /// Origins of the leaves in or near which a face of the box lies; sorted.
   [[nodiscard]] std::vector<Coord> wallOrigins() const {
     std::vector<Coord> origins;
     const openvdb::CoordBBox range = voxelRange(domain_.box, plan_, "");
@@ -94,7 +94,7 @@ class LeafMaker {
     const double radius = 3.5 * std::sqrt(3.0) * plan_.voxel;
     return std::fabs(source_.boxDistance(centerOf(origin))) < plan_.band + radius;
   }
-  /// Whether the leaf's middle is out of the box.
+  /// Whether the leaf's middle is outside the box.
   [[nodiscard]] bool isBeyond(const Coord& origin) const noexcept {
     return source_.boxDistance(centerOf(origin)) > 0.0;
   }

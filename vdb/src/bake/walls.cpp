@@ -16,8 +16,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] On a wall's sides, its neighborhood is looked at from so far: what is nearer to another
-/// wall than that may be taken for the wrong side, and distances are off by no more.
+/// [voxels] The two sides of a wall are probed this far from it: where another wall is nearer than
+/// this the side may come out wrong, and distances are off by no more than this.
 constexpr double kBeside = 1e-5;
 
 constexpr std::size_t kBatch = 256;
@@ -29,7 +29,7 @@ struct Sorted {
   std::vector<std::vector<Corners3>> pieces;
 };
 
-/// Looks at both sides of a wall; for one thread.
+/// Probes both sides of a wall; one object for each thread.
 class Looker {
  public:
   explicit Looker(const SolidInside& inside) : inside_(inside), count_(inside.counter()) {}
@@ -40,7 +40,7 @@ class Looker {
     return inside_.at(p + aside, count_) == inside_.at(p - aside, count_) ? WallUse::kIdle
                                                                           : WallUse::kNeeded;
   }
-  /// At the middle of a triangle.
+  /// Probes at the middle of a triangle.
   WallUse operator()(const Corners3& t) {
     return (*this)((t[0] + t[1] + t[2]) / 3.0,
                    unitOr(glm::cross(t[1] - t[0], t[2] - t[0]), Vec3(0.36, 0.48, 0.8)));
@@ -68,12 +68,12 @@ void inBatches(std::size_t count, const SolidInside& inside, const Progress& pro
                        });
 }
 
-/// Triangles without cuts that hang together across edges of two: all of one use.
+/// Triangles without cuts, connected across edges of two: all have one use.
 class Patches {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffU;
-  /// The largest of a patch: one of them may lie so near to another wall that its sides tell
-  /// nothing.
+  /// The largest triangles of a patch. Three, because one of them may lie so near to another wall
+  /// that probing its sides tells nothing.
   using Witnesses = std::array<std::uint32_t, 3>;
 
   Patches(const Solid& solid, const WallCuts& cuts) : parent_(solid.triangles.size()) {
@@ -114,7 +114,7 @@ class Patches {
   std::vector<Witnesses> witnesses_;
 };
 
-/// Walls cut each other where they cross, so that each piece is of one use.
+/// Walls are cut where they cross each other, so that each piece has one use.
 Sorted sortByCuts(const Solid& solid, const SolidInside& inside, const Progress& progress) {
   const WallCuts cuts(solid, progress);
   Patches patches(solid, cuts);
@@ -142,13 +142,13 @@ Sorted sortByCuts(const Solid& solid, const SolidInside& inside, const Progress&
   return sorted;
 }
 
-/// For solids that a flood filled: what is inside is known at voxels only, so that borders are
-/// found by halving.
+/// For solids that a flood filled: their inside is known at voxels only, so that borders are found
+/// by bisection.
 class Halver {
  public:
   explicit Halver(Looker& look) : look_(look) {}
 
-  /// Of a triangle; the pieces that are needed go to `pieces`.
+  /// Sorts a triangle; the pieces that are needed go to `pieces`.
   WallUse sort(const Corners3& t, std::vector<Corners3>& pieces) {
     const Vec3 middle = (t[0] + t[1] + t[2]) / 3.0;
     const Vec3 normal = unitOr(glm::cross(t[1] - t[0], t[2] - t[0]), Vec3(0.36, 0.48, 0.8));
@@ -178,7 +178,7 @@ class Halver {
   }
 
  private:
-  /// [voxels] Pieces larger than that are looked at in parts, lest something passes between.
+  /// [voxels] Larger pieces are probed in parts, so that no wall between the probes is missed.
   static constexpr double kCoarse = 4.0;
   static constexpr double kFine = 0.1;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Which of a solid's triangles have the solid on one side only.
+/// Finds the triangles of a solid that have the solid on one side only.
 
 #include <array>
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace palpate::vdb {
 
-/// Without the parts of triangles that have the solid, or nothing, on both sides: where parts
-/// overlap, and walls that stand in the solid. A triangle that is partly such is cut along the
-/// lines where others cross it (of a solid that a flood filled, to a tenth of a voxel). Vertices
-/// are added; triangles that are whole keep their order.
+/// Removes the parts of triangles that have the solid on both sides, or on neither: where parts
+/// overlap, and walls that stand inside the solid. A triangle of which this holds in part is cut
+/// along the lines where others cross it (in a solid that a flood filled, to a tenth of a voxel).
+/// Vertices are added; triangles that stay whole keep their order.
 /// @throws Error (kCancelled).
 void dropIdleWalls(Solid& solid, const Columns& columns, const Progress& progress);
 

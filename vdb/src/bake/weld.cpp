@@ -9,10 +9,10 @@
 namespace palpate::vdb {
 namespace {
 
-/// Of the mesh's size. Copies of a corner that are each off by up to 1e-5 along each axis are up
-/// to 3.5e-5 apart.
+/// Relative to the mesh's size. Copies of a corner that are each off by up to 1e-5 along each axis
+/// are up to 3.5e-5 apart.
 constexpr std::array<double, 3> kReaches{1e-6, 1e-5, 4e-5};
-/// [voxels] What is joined is not felt.
+/// [voxels] Joining vertices this near is not felt.
 constexpr double kLargestReach = 0.1;
 constexpr std::uint32_t kNone = 0xffffffffU;
 
@@ -33,11 +33,11 @@ std::size_t hashOf(const Vec3& p) noexcept {
 void weld(const Mesh& mesh, double voxel, Solid& solid) {
   std::size_t slots = 16;
   while (slots < 2 * mesh.vertices.size()) slots *= 2;
-  std::vector<std::uint32_t> table(slots, kNone);  // of vertices, each the first in its place
+  std::vector<std::uint32_t> table(slots, kNone);  // of vertices, each the first at its place
   std::vector<std::uint32_t> name(mesh.vertices.size());
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vec3& place = mesh.vertices[v];
-    if (!isFinite(place)) continue;  // no triangle has it
+    if (!isFinite(place)) continue;  // no triangle uses it
     std::size_t slot = hashOf(place) & (slots - 1);
     while (table[slot] != kNone && mesh.vertices[table[slot]] != place)
       slot = (slot + 1) & (slots - 1);
@@ -86,8 +86,8 @@ bool weldRims(Solid& solid, const std::vector<Side>& sides, double reach) {
   });
   if (!any || !(reach > 0.0)) return false;
   const Box3 bounds = boundsOf(solid);
-  // Cells much larger than the reach, so that few vertices are near a border and look into a second
-  // one.
+  // Cells are much larger than the reach, so that few vertices are near a cell's border, where a
+  // second cell has to be searched.
   const double size = 16.0 * reach;
   struct Cell {
     Vec3 place;
@@ -96,10 +96,10 @@ bool weldRims(Solid& solid, const std::vector<Side>& sides, double reach) {
   const auto cell_at = [&](const Vec3& place) { return Cell{place, hashOf(place)}; };
   std::size_t slots = 16;
   while (slots < 2 * solid.vertices.size()) slots *= 2;
-  std::vector<std::uint32_t> table(slots, kNone);                 // first vertex of a cell
-  std::vector<std::uint32_t> next(solid.vertices.size(), kNone);  // of the same cell
+  std::vector<std::uint32_t> table(slots, kNone);                 // first vertex of each cell
+  std::vector<std::uint32_t> next(solid.vertices.size(), kNone);  // next vertex in the same cell
   std::vector<Vec3> cell_of(solid.vertices.size());
-  /// The slot of a cell: with its first vertex, or empty.
+  /// The slot of a cell: the one that holds its first vertex, or an empty one.
   const auto slot_of = [&](const Cell& cell) {
     std::size_t slot = cell.hash & (slots - 1);
     while (table[slot] != kNone && cell_of[table[slot]] != cell.place)

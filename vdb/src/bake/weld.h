@@ -1,5 +1,5 @@
 #pragma once
-/// Vertices that are one.
+/// Joins vertices that are at one place.
 
 #include <vector>
 
@@ -9,17 +9,19 @@
 
 namespace palpate::vdb {
 
-/// Vertices in the very same place become one; triangles with two corners in one are dropped.
+/// Vertices at exactly the same place become one; triangles with two corners at one place are
+/// dropped.
 void weld(const Mesh& mesh, double voxel, Solid& solid);
 
-/// Then those along edges that have not two triangles, where they are nearer than `reach` [voxels],
-/// so that closed meshes stay as they are. `sides`: sorted, of the solid's triangles.
+/// Then joins vertices that are nearer than `reach` [voxels], but only along edges that do not have
+/// two triangles, so that closed meshes stay as they are. `sides`: sorted, of the solid's
+/// triangles.
 /// @returns whether any were joined; triangles then may have become fewer.
 bool weldRims(Solid& solid, const std::vector<Side>& sides, double reach);
 
-/// [voxels] From the least of the reaches to try to the largest, while a mesh has open edges: what
-/// rounding to floats, or to seven digits of a text, moves a vertex by; and gaps of 1e-5 of the
-/// mesh's size and some more. None is more than a tenth of a voxel.
+/// [voxels] The reaches to try, from the smallest to the largest, while a mesh has open edges. They
+/// cover the rounding of a vertex to floats, or to seven digits of a text, and gaps of a little
+/// more than 1e-5 of the mesh's size. None is more than a tenth of a voxel.
 [[nodiscard]] std::vector<double> weldReaches(const Solid& solid);
 
 }  // namespace palpate::vdb

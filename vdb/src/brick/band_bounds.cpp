@@ -17,14 +17,15 @@ using cells::kCells;
 using cells::kRows;
 using cells::Range;
 
-/// [voxels] A cell whose coefficients are all beyond that needs no closer look.
+/// [voxels] A cell whose coefficients all have the same sign and are larger than this needs no
+/// closer look.
 constexpr float kClear = 2.5F;
-/// What rounding to floats leaves of a slope: some six roundings of values up to 20 voxels, three
-/// times each.
+/// Bound of the error that rounding to floats leaves in a slope: some six roundings of values up to
+/// 20 voxels, each counted three times.
 constexpr double kRounding = 5e-5;
 
-/// Of |slope along a direction|, from the ranges of three components: the direction is their
-/// middle.
+/// Least |slope along a direction|, from the ranges of three components: the direction is the
+/// middle of the ranges.
 double leastSlope(const std::array<Range, 3>& d) noexcept {
   double middle[3];
   double square = 0.0;
@@ -41,7 +42,7 @@ double leastSlope(const std::array<Range, 3>& d) noexcept {
   return least / std::sqrt(square);
 }
 
-/// Whether some cell may be nearer to the surface than kClear, so that the brick is worth a closer
+/// Whether some cell may be nearer to the surface than kClear, so that the brick needs a closer
 /// look.
 bool isNear(const Brick& brick) noexcept {
   float least = std::numeric_limits<float>::infinity();
@@ -64,7 +65,7 @@ template <std::size_t kSide>
 void addCell(const float (&c)[kSide][kSide][kSide], bool known, bool is_steep, const Voxel& at,
              BandBounds& bounds) noexcept {
   const Range range = cells::rangeOf(c);
-  // On the way from the surface to a cell that does not answer, its own slopes do not count.
+  // Only cells that answer count here: the path from the surface ends at the cell that does not.
   if (known && is_steep && range.least() < BandBounds::kNear) {
     bounds.steepest_near = std::max(bounds.steepest_near, cells::steepest(cells::slopesOf(c)));
   }
@@ -88,7 +89,8 @@ void addCell(const float (&c)[kSide][kSide][kSide], bool known, bool is_steep, c
 }  // namespace
 
 void BandBounds::add(const BandBounds& other) noexcept {
-  // Of equals the first along the axes, so that the order of threads does not tell.
+  // If equal, take the first along the axes, so that the result does not depend on the order of
+  // threads.
   if (other.least_unknown < least_unknown ||
       (other.least_unknown == least_unknown && other.unknown_at < unknown_at)) {
     least_unknown = other.least_unknown;
@@ -130,7 +132,7 @@ void BandBounds::add(const Brick& brick, const Voxel& first, bool cubic,
   const bool is_steep = steepest_of_brick > kNotSteep;
   if (!is_steep) own.steepest_near = std::max(1.0, steepest_of_brick);
   if (!isNear(brick)) {
-    // No coefficient is nearer to 0 than kClear, and none of another side: no value either.
+    // All coefficients are on one side, at least kClear from 0; so is every value.
     own.least_unknown = kClear;
     own.unknown_at = first;
     const bool all_known = std::all_of(std::begin(brick.known), std::end(brick.known),

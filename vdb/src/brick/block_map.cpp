@@ -26,18 +26,20 @@ constexpr std::uint32_t kEntriesOfGroup = 512;
 /// A table of one level may have this many entries for each brick, 4 bytes each beside its 5888.
 constexpr std::uint64_t kEntriesPerBrick = 64;
 constexpr std::uint64_t kEntriesAnyway = 1 << 16;
-/// The upper of two levels: 256 MB, for a box of 26000^3 voxels. A box is larger only by mistake.
+/// Most entries of the upper of two levels: 256 MB, for a box of 26000^3 voxels. A larger box can
+/// only be a mistake.
 constexpr double kMostGroups = 1 << 26;
 
 Coord blockOf(const Coord& voxel) {
   return {voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3};  // rounds down
 }
 
-/// Along one axis: which parts of a block (bit n: voxel n) the stencils of the block before it, of
-/// its own and of the one behind it reach.
+/// Along one axis, the voxels of a block (bit n: voxel n) that are in stencils of the block before
+/// it, of the block itself, and of the block behind it.
 constexpr unsigned kReached[3] = {0x03, 0xFF, 0x80};
 
-/// The neighbors of a leaf that are none, but have active voxels of it in their stencils.
+/// Adds the neighbors of a leaf that are not leaves, but have active voxels of this leaf in their
+/// stencils.
 void addReached(const Leaf& leaf, const Accessor& accessor, std::vector<Coord>& blocks) {
   const auto& mask = leaf.getValueMask();
   bool reached[3][3][3] = {};
@@ -106,7 +108,7 @@ class TableMaker {
     return static_cast<std::size_t>((block.x() & 7) << 6 | (block.y() & 7) << 3 | (block.z() & 7));
   }
 
-  /// A table whose upper level covers `box`: of blocks, or of groups, each with its sign.
+  /// A table whose upper level covers `box`. Its entries are blocks, or groups, each with its sign.
   [[nodiscard]] BlockTable sized(const CoordBBox& box, int levels_below) const {
     BlockTable table;
     table.box = box;
@@ -131,7 +133,7 @@ class TableMaker {
     return number;
   }
 
-  /// The signs of the cubes of `box`, each 2^`shift` voxels long.
+  /// Writes the signs of the cubes of `box`, each 2^`shift` voxels long.
   void fill(const CoordBBox& box, unsigned shift, std::uint32_t* entries, std::uint32_t stride_x,
             std::uint32_t stride_y) const {
     const Coord size = box.dim();

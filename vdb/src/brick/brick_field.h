@@ -1,17 +1,17 @@
 #pragma once
-/// The field out of bricks. Includable without OpenVDB, for benchmarks.
+/// A field that reads bricks. Can be included without OpenVDB, for benchmarks.
 
 #include "brick/bricks.h"
 #include "brick/instruction_set.h"
 
 namespace palpate::vdb {
 
-/// Final, and its members inline: a caller that knows the type pays one call through a pointer, to
-/// the kernel of the instruction set.
+/// The class is final and its members are inline: for a caller that knows the type, a query costs
+/// one call through a pointer, to the kernel of the instruction set.
 class BrickField final : public Field {
  public:
-  /// `sampler` is kCubic or kTrilinear. The grid is taken as it is, not widened. Must not be asked
-  /// out of the box `within` [m].
+  /// `sampler` is kCubic or kTrilinear. The grid is taken as it is, not widened. Must not be
+  /// queried outside the box `within` [m].
   explicit BrickField(const LevelSet& grid, Sampler sampler = Sampler::kCubic,
                       InstructionSet set = chosenInstructionSet(),
                       const Box3& within = Box3::everything());
@@ -23,8 +23,8 @@ class BrickField final : public Field {
   [[nodiscard]] FieldSample sample(const Vec3& p) const noexcept override {
     return sample_(view_, p);
   }
-  /// Trilinear: the Hessian is that of the cell, which has no diagonal; by differences across
-  /// cells.
+  /// Trilinear: within a cell the Hessian has a zero diagonal, so that it is taken by finite
+  /// differences across cells.
   [[nodiscard]] FieldJet jet(const Vec3& p) const noexcept override {
     return jet_ != nullptr ? jet_(view_, p) : Field::jet(p);
   }
@@ -37,7 +37,7 @@ class BrickField final : public Field {
 
  private:
   Bricks bricks_;
-  BrickView view_;  ///< beside the pointers, so that a look finds them in one place
+  BrickView view_;  ///< next to the pointers, so that a query finds both in one place
   BrickKernels::Sample sample_;
   BrickKernels::Jet jet_;
 };

@@ -35,9 +35,9 @@ using Accessor = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
 
 /// Three blocks in a row along z, as leaves or tiles.
 struct BlockRow {
-  std::array<const float*, 3> values{};  ///< of a leaf's 512 voxels; null: a tile
+  std::array<const float*, 3> values{};  ///< a leaf's 512 voxels; null: a tile
   std::array<const Leaf::NodeMaskType*, 3> masks{};
-  std::array<float, 3> tiles{};  ///< what a tile holds
+  std::array<float, 3> tiles{};  ///< the value of a tile
 };
 
 BlockRow blockRowAt(const Accessor& accessor, const Coord& middle) {
@@ -55,7 +55,7 @@ BlockRow blockRowAt(const Accessor& accessor, const Coord& middle) {
   return row;
 }
 
-/// `kCount` voxels of block `kBlock` from `kFirst` on.
+/// Copies `kCount` voxels of block `kBlock` from `kFirst` on.
 template <std::size_t kBlock, unsigned kFirst, unsigned kCount>
 unsigned gatherPart(const BlockRow& row, unsigned x, unsigned y, float* to) {
   const float* const values = row.values[kBlock];
@@ -68,14 +68,15 @@ unsigned gatherPart(const BlockRow& row, unsigned x, unsigned y, float* to) {
   return static_cast<unsigned>(word >> (8 * y + kFirst)) & ((1U << kCount) - 1U);
 }
 
-/// The voxels of a neighborhood's row along z: of the first block the last three, of the last one
-/// the first four. `x` and `y` count within the blocks. Returns a bit for each that is known.
+/// Copies the voxels of a neighborhood's row along z: the last three of the first block, all of the
+/// second, and the first four of the last. `x` and `y` count within the blocks. Returns a bit for
+/// each voxel that is known.
 unsigned gatherRow(const BlockRow& row, unsigned x, unsigned y, float* to) {
   return gatherPart<0, 5, 3>(row, x, y, to) | gatherPart<1, 0, 8>(row, x, y, to + 3) << 3 |
          gatherPart<2, 0, 4>(row, x, y, to + 11) << 11;
 }
 
-/// Values and topology around a block, from the leaves and tiles there.
+/// Copies values and topology around a block, from the leaves and tiles there.
 void gather(const Accessor& accessor, const Coord& block, Neighborhood& to) {
   const Coord first = block << 3;
   std::array<std::array<BlockRow, 3>, 3> blocks;
@@ -96,11 +97,12 @@ void gather(const Accessor& accessor, const Coord& block, Neighborhood& to) {
   }
 }
 
-/// What one thread learns while it makes bricks.
+/// Results that one thread collects while it makes bricks.
 struct Part {
   Neighborhood neighborhood;
   double steepest_square = 0.0;
-  double last_square = 0.0;  ///< of the last brick made, by its coefficients
+  /// [square of the slope] Bound for the last brick made, from its coefficients
+  double last_square = 0.0;
   CoordBBox negative;
   BandBounds bounds;
 };
@@ -118,7 +120,7 @@ void expandByNegative(const Brick& brick, const Coord& block, CoordBBox& negativ
   }
 }
 
-/// [voxels per voxel]^2 of all cells of the brick.
+/// [voxels per voxel]^2 Bound of the squared slope over all cells of the brick.
 double steepestSquareIn(const Brick& brick, bool cubic) noexcept {
   const int first = cubic ? -1 : 0;
   const std::size_t side = cubic ? 11 : 9;
@@ -126,7 +128,7 @@ double steepestSquareIn(const Brick& brick, bool cubic) noexcept {
                         {Brick::kSlab, Brick::kRow});
 }
 
-/// The voxels of all cells in the box; numbers of voxels that 32 bits hold.
+/// The voxels of all cells in the box, limited to numbers that 32 bits hold.
 CoordBBox voxelsOf(const Box3& box, const LevelSet& grid) {
   constexpr double kFarthest = 1 << 29;
   const auto at = [&](const Vec3& p, double by) {
@@ -135,11 +137,11 @@ CoordBBox voxelsOf(const Box3& box, const LevelSet& grid) {
     return Coord(static_cast<int>(std::floor(q.x)), static_cast<int>(std::floor(q.y)),
                  static_cast<int>(std::floor(q.z)));
   };
-  // The margin is for the rounding of places.
+  // The margin covers the rounding of places.
   return {at(box.lo, -1.0), at(box.hi, 1.0)};
 }
 
-/// Makes bricks, one after the other on each thread.
+/// Makes bricks, one after another on each thread.
 class BrickMaker {
  public:
   BrickMaker(const LevelSet& grid, Sampler sampler)
@@ -171,8 +173,8 @@ class BrickMaker {
     (cubic_ ? fillCubic : fillLinear)(part.neighborhood, plateau_, units_per_voxel_, brick);
     part.last_square = steepestSquareIn(brick, cubic_);
     double square = part.last_square;
-    // Cell by cell only what could be the steepest of all; what is left out could not, in whatever
-    // order bricks are made.
+    // Look cell by cell only where the brick could hold the steepest slope of all. A brick that is
+    // skipped could not, in whatever order bricks are made.
     if (cubic_ && square > std::max(kNotSteep * kNotSteep, part.steepest_square)) {
       const double slope = steepestInCells(brick);
       square = std::min(square, slope * slope);
@@ -180,8 +182,8 @@ class BrickMaker {
     part.steepest_square = std::max(part.steepest_square, square);
   }
 
-  /// Of all that was made. The slope of a distance is 1, though a grid whose surface is flat may
-  /// measure less. The margin is for what rounding does to the samples.
+  /// Bound over all bricks made. The slope of a distance is 1, though a grid whose surface is flat
+  /// may have less. The margin covers the rounding of samples.
   [[nodiscard]] double lipschitz() const {
     double steepest_square = 0.0;
     for (const Part& part : parts_) {
@@ -229,7 +231,7 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler, const Box3& within,
   count_ = map.bricks.size();
   requireBrickMemory(static_cast<double>(count_ * sizeof(Brick)), max_memory, info.name);
   BlockTable table = makeTable(tree, map);
-  // A cold look at a brick then costs no walk through page tables on top.
+  // Huge pages: a cold query of a brick then costs no walk through page tables on top.
   bricks_.reset(static_cast<std::byte*>(allocateHuge(count_ * sizeof(Brick), alignof(Brick))));
   maker.forAll(count_, [&](std::size_t n, const Accessor& accessor, Part& part) {
     Brick& brick = *new (bricks_.get() + n * sizeof(Brick)) Brick;
@@ -243,7 +245,7 @@ Bricks::Bricks(const LevelSet& grid, Sampler sampler, const Box3& within,
   const auto position = [&](const Coord& at) {
     return grid.impl().origin + info.voxel_size * Vec3(at.x(), at.y(), at.z());
   };
-  // A cell is negative somewhere only if one of its voxels is.
+  // A cell has negative values only if one of its voxels is negative.
   const int reach = maker.cubic() ? 2 : 1;
   if (!negative.empty()) {
     bounds_ = {position(negative.min().offsetBy(-reach)), position(negative.max().offsetBy(reach))};
@@ -279,8 +281,8 @@ BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler, double least_wit
   for (const Part& part : maker.parts()) survey.bounds.add(part.bounds);
   survey.lipschitz = maker.lipschitz();
   if (survey.bounds.within() >= least_within) return survey;
-  // Holes and plates as thin as a voxel are steep, and weaken that bound everywhere: look where it
-  // matters.
+  // Holes and plates as thin as a voxel are steep, and weaken that bound for the whole grid:
+  // compute it again near the points that do not answer only.
   std::vector<CellBounds> bounds(map.bricks.size());
   maker.forAll(map.bricks.size(), [&](std::size_t n, const Accessor& accessor, Part& part) {
     Brick brick;

@@ -11,23 +11,24 @@
 
 namespace palpate::vdb {
 
-/// Owns the memory that a BrickView looks into. Moves, and never changes after it is made; any
-/// number of threads may read.
+/// Owns the memory that a BrickView refers to. Can be moved, and never changes after it is made;
+/// any number of threads may read.
 class Bricks {
  public:
-  /// Copies `grid`, in parallel. `sampler` is kCubic or kTrilinear. The band is taken as it is: too
-  /// narrow a one leaves no cell known.
-  /// Right within the box `within` [m] only.
-  /// @throws Error (kOperation) if they would take more than `max_memory` [bytes]; 0: no limit.
+  /// Copies `grid`, in parallel. `sampler` is kCubic or kTrilinear. The band is taken as it is:
+  /// with one that is too narrow no cell is known. Samples are right within the box `within` [m]
+  /// only.
+  /// @throws Error (kOperation) if the bricks would take more than `max_memory` [bytes]; 0: no
+  /// limit.
   Bricks(const LevelSet& grid, Sampler sampler, const Box3& within = Box3::everything(),
          std::uint64_t max_memory = 0);
 
   [[nodiscard]] const BrickView& view() const noexcept { return view_; }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] std::uint64_t memory() const noexcept;  ///< [bytes]
-  /// [-] Of the function that is sampled, everywhere: no slope is steeper.
+  /// [-] Bound of the slope of the sampled function, everywhere.
   [[nodiscard]] double lipschitz() const noexcept { return lipschitz_; }
-  /// [m] Holds every point with a negative value.
+  /// [m] Contains every point with a negative value.
   [[nodiscard]] const Box3& bounds() const noexcept { return bounds_; }
 
  private:
@@ -44,13 +45,13 @@ class Bricks {
   Box3 bounds_;
 };
 
-/// What is true of the bricks of `grid` everywhere, found without keeping them.
+/// Properties that the bricks of `grid` would have, found without keeping the bricks.
 struct BrickSurvey {
   BandBounds bounds;
   double lipschitz = 1.0;  ///< as Bricks::lipschitz()
 };
-/// Looks a second time, longer, if BandBounds::within() is below `least_within` [voxels] by slopes
-/// alone.
+/// Computes a sharper bound, which takes longer, if BandBounds::within() is below `least_within`
+/// [voxels] by slopes alone.
 [[nodiscard]] BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler,
                                        double least_within = 0.0);
 

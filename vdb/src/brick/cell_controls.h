@@ -1,5 +1,5 @@
 #pragma once
-/// The control values of a brick's cells, between which the spline lies: see BandBounds.
+/// The control values of a brick's cells, which bound the spline: see BandBounds.
 
 #include <algorithm>
 #include <array>
@@ -15,10 +15,10 @@ inline constexpr int kCells = Brick::kSide;
 inline constexpr std::size_t kRows = Brick::kRows;
 inline constexpr std::size_t kFine = 3 * kCells + 1;  ///< control values along an axis
 inline constexpr std::size_t kFineRow =
-    kFine + 3;  ///< floats, so that four can be read at the last
+    kFine + 3;  ///< floats, so that four can be read from the last one on
 
-/// The control values of the cells along one axis, out of 11 coefficients `step` apart; `to`
-/// likewise.
+/// The control values of the cells along one axis, computed from 11 coefficients. `from(i)` reads
+/// coefficient i; `to(i, value)` stores control value i.
 template <typename From, typename To>
 void refine(const From& from, const To& to) noexcept {
   for (std::size_t i = 0; i <= kCells; ++i) {
@@ -29,7 +29,7 @@ void refine(const From& from, const To& to) noexcept {
   }
 }
 
-/// The least and the largest of some numbers.
+/// The smallest and the largest of some numbers.
 struct Range {
   float lo = std::numeric_limits<float>::infinity();
   float hi = -std::numeric_limits<float>::infinity();
@@ -38,7 +38,7 @@ struct Range {
     lo = std::min(lo, value);
     hi = std::max(hi, value);
   }
-  /// Of the absolute value; 0 if both signs occur.
+  /// Least absolute value; 0 if both signs occur.
   [[nodiscard]] double least() const noexcept {
     return std::max({0.0, static_cast<double>(lo), -static_cast<double>(hi)});
   }
@@ -62,7 +62,7 @@ class Controls {
     }
   }
 
-  /// Those of a cell.
+  /// Copies the control values of one cell.
   void of(std::size_t i, std::size_t j, std::size_t k, float (&to)[4][4][4]) const noexcept {
     for (std::size_t x = 0; x < 4; ++x) {
       for (std::size_t y = 0; y < 4; ++y) {
@@ -80,7 +80,7 @@ class Controls {
   float by_xy_[kFine][kFine][kRows];
 };
 
-/// Too large for the stack of some threads.
+/// One object for each thread, because it is too large for the stack of some threads.
 inline Controls& controlsOfThread() noexcept {
   thread_local Controls controls;
   return controls;
@@ -97,7 +97,7 @@ Range rangeOf(const float (&c)[kSide][kSide][kSide]) noexcept {
   return range;
 }
 
-/// Of the three derivatives: differences of neighbors, by the polynomial's degree.
+/// Ranges of the three derivatives: differences of neighbors, times the polynomial's degree.
 template <std::size_t kSide>
 std::array<Range, 3> slopesOf(const float (&c)[kSide][kSide][kSide]) noexcept {
   constexpr auto kDegree = static_cast<float>(kSide - 1);
@@ -114,7 +114,7 @@ std::array<Range, 3> slopesOf(const float (&c)[kSide][kSide][kSide]) noexcept {
   return d;
 }
 
-/// The cell's coefficients: `kSide` along each axis.
+/// Range of the cell's coefficients: `kSide` along each axis.
 template <std::size_t kSide>
 Range coefficientRange(const Brick& brick, int i, int j, int k) noexcept {
   constexpr int kFirst = kSide == 4 ? -1 : 0;
@@ -132,7 +132,7 @@ inline bool isKnown(const Brick& brick, int i, int j, int k) noexcept {
   return (brick.known[i * kCells + j] >> k & 1U) != 0;
 }
 
-/// [-] No slope is above that.
+/// [-] Upper bound of the slope.
 inline double steepest(const std::array<Range, 3>& d) noexcept {
   double square = 0.0;
   for (const Range& range : d) {

@@ -72,7 +72,7 @@ FieldSample sampleWithoutBrick(const BrickView& view, std::uint32_t entry, const
   if (!isFinite(p)) return {std::numeric_limits<double>::quiet_NaN(), Vec3(0.0), false};
   const Vec3 last = view.origin + view.voxel * Vec3(view.size[0], view.size[1], view.size[2]);
   const Vec3 out = glm::max(glm::max(view.origin - p, p - last), Vec3(0.0));
-  // hypot, because squares overflow far away.
+  // hypot, because squares overflow for far points.
   return {view.plateau + std::hypot(out.x, out.y, out.z), Vec3(0.0), false};
 }
 

@@ -1,12 +1,13 @@
-// One look into bricks: a kernel, as simd.h says.
+// A query of bricks: a kernel, as simd.h says.
 //
 // The cubic kernel: with c the 4^3 coefficients around the point and w, d, e the weights of the
 // cubic B-spline, its first and its second derivative along one axis,
 //   value = sum wx wy wz c,  d/dx = sum dx wy wz c,  d2/dxdy = sum dx dy wz c,  ...
 // Sums run over y first, then x, each on four lanes along z; then over the lanes.
 //
-// What bounds the time is how many instructions the processor can look ahead, so that the next look
-// starts while this one waits for memory: fewer instructions count more than shorter chains.
+// The time is limited by how many instructions the processor can look ahead, so that the next query
+// starts while this one waits for memory: fewer instructions matter more than shorter dependency
+// chains.
 
 #include <bit>
 
@@ -18,15 +19,16 @@ namespace {
 
 using Lanes = Doubles;
 
-/// Where a point lies. Along each axis: the voxel before it, from 0 in the box and anything beyond
-/// it, and how far it is from the middle of the cell that begins there, from -0.5 to 0.5.
+/// Where a point lies. Along each axis: the voxel before it (from 0 in the box; a number beyond
+/// every box if the point is outside), and its distance from the middle of the cell that begins
+/// there, from -0.5 to 0.5.
 struct Cell {
   std::uint64_t i, j, k;
   double ux, uy, uz;
 };
 
-/// 1.5 * 2^52: a double plus this has its nearest integer in the last bits, and the bits of what is
-/// not a number, infinite or negative are, less those of this, beyond every box.
+/// 1.5 * 2^52: a double plus this has its nearest integer in the last bits. For a NaN, an infinite
+/// or a negative number, the bits of the sum less those of this constant are beyond every box.
 inline constexpr double kRounder = 0x1.8p52;
 inline constexpr auto kRounderBits = std::bit_cast<std::uint64_t>(kRounder);
 
@@ -70,7 +72,7 @@ PALPATE_KERNEL const Brick& brickAt(const BrickView& view, std::uint32_t entry) 
                                          static_cast<std::size_t>(entry) * BrickView::kUnit);
 }
 
-/// The first value of the cell's stencil: one voxel before it along each axis.
+/// The first value of the cell's stencil, which begins one voxel before the cell along each axis.
 PALPATE_KERNEL const float* firstOf(const Brick& brick, const Cell& cell) noexcept {
   const auto x = static_cast<std::uint32_t>(cell.i) & 7U;
   const auto y = static_cast<std::uint32_t>(cell.j) & 7U;
@@ -82,9 +84,9 @@ PALPATE_KERNEL bool isKnown(const Brick& brick, const Cell& cell) noexcept {
   return (brick.known[(cell.i & 7) * 8 + (cell.j & 7)] >> (cell.k & 7) & 1U) != 0;
 }
 
-/// Weights of the four coefficients along one axis, at a from the cell's end and b from its
-/// beginning: a3, w1, w2, b3 make 6 times the value, -a2, d1, -d2, b2 make 2 times the first
-/// derivative, and a, 3b - 2, 3a - 2, b the second.
+/// Weights of the four coefficients along one axis, with a the distance from the cell's end and b
+/// that from its beginning: a3, w1, w2, b3 give 6 times the value; -a2, d1, -d2, b2 give 2 times
+/// the first derivative; and a, 3b - 2, 3a - 2, b the second derivative.
 struct Weights {
   Lanes a, b, a2, b2, a3, b3, w1, w2, d1, d2;
 };
@@ -105,8 +107,9 @@ PALPATE_KERNEL Weights weightsAt(double u) noexcept {
   return w;
 }
 
-/// The weights of the lanes along z: of the value, of its first and of its second derivative. All
-/// with the 1/6 of the sums along x and y, so that a value's sum is whole.
+/// The weights of the lanes along z, for the value and for its first and second derivative. All
+/// contain the factor 1/6 of the sums along x and y, so that the sum for a value needs no further
+/// factor.
 struct LaneWeights {
   Lanes value, slope, bend;
 };
@@ -132,7 +135,7 @@ PALPATE_KERNEL Rows rowsAt(const float* row) noexcept {
           loadWidened(row + 3 * Brick::kRow)};
 }
 
-/// 6 times the value. In one chain, which takes fewer instructions than two that run at once.
+/// 6 times the value. As one chain, which takes fewer instructions than two chains in parallel.
 PALPATE_KERNEL Lanes valueOf(const Weights& w, const Rows& r) noexcept {
   return fma(w.b3, r.r3, fma(w.w2, r.r2, fma(w.w1, r.r1, w.a3 * r.r0)));
 }
@@ -178,14 +181,14 @@ PALPATE_KERNEL Slabs sumSlabs(const float* first, const Weights& y) noexcept {
           {s0.bend, s1.bend, s2.bend, s3.bend}};
 }
 
-/// The sums over a cell's stencil that make value and gradient, and what the Hessian is made of
-/// besides.
+/// The sums over a cell's stencil that make value and gradient, and the further ones that make the
+/// Hessian.
 struct Sums {
   Weights x;
   LaneWeights z;
   Slabs slabs;
   Lanes s, sx, sy;
-  Lanes first;  ///< [m] the value; the gradient
+  Lanes first;  ///< [m] the value, then the gradient
 };
 
 template <bool kWithBend>
@@ -243,7 +246,7 @@ PALPATE_ENTRY FieldJet jetCubic(const BrickView& view, const Vec3& p) noexcept {
           Mat3(second[0], xy, xz, xy, second[1], yz, xz, yz, second[2]), true};
 }
 
-/// Trilinear, out of bricks that hold the grid's own values.
+/// Trilinear interpolation, from bricks that hold the grid's own values.
 PALPATE_ENTRY FieldSample sampleLinear(const BrickView& view, const Vec3& p) noexcept {
   const Cell cell = locate(view, p);
   const std::uint32_t entry = entryAt(view, cell);
@@ -255,7 +258,8 @@ PALPATE_ENTRY FieldSample sampleLinear(const BrickView& view, const Vec3& p) noe
   const double ty = cell.uy + 0.5;
   const double tz = cell.uz + 0.5;
   const float* const far = near + Brick::kSlab;
-  // Lanes: the four edges along z. Along z, then y, then x; each step keeps the differences.
+  // The lanes are the four edges along z. Interpolate along z, then y, then x; each step keeps the
+  // differences.
   const Lanes low{near[0], near[Brick::kRow], far[0], far[Brick::kRow]};
   const Lanes high{near[1], near[Brick::kRow + 1], far[1], far[Brick::kRow + 1]};
   const Lanes dz = high - low;

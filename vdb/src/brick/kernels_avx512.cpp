@@ -1,4 +1,4 @@
-// The kernels for processors with AVX-512 F and VL: four lanes as with AVX2, in twice the
+// The kernels for processors with AVX-512 F and VL: four lanes as with AVX2, with twice as many
 // registers.
 
 #if defined(__x86_64__)

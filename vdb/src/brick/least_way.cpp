@@ -12,14 +12,15 @@ using openvdb::Coord;
 
 constexpr int kCells = Brick::kSide;
 constexpr double kPerSlope = 8.0;
-/// [voxels] What rounding to floats leaves of a value.
+/// [voxels] Error that rounding to floats leaves in a value.
 constexpr double kRounding = 1e-4;
 
 std::size_t cellAt(int x, int y, int z) noexcept {
   return static_cast<std::size_t>((x * kCells + y) * kCells + z);
 }
 
-/// Of -1, one from 0 to 7, and 8: the block that it is in, counted from the one before.
+/// The block of a cell along one axis, counted from the block before: 0 for cell -1, 1 for cells 0
+/// to 7, 2 for cell 8.
 int blockOf(int cell) noexcept { return cell < 0 ? 0 : cell < kCells ? 1 : 2; }
 
 template <std::size_t kSide>
@@ -43,7 +44,7 @@ ControlValues<4> cubicControls(const cells::Controls& controls, int x, int y, in
   return c;
 }
 
-/// What surrounds a cell, itself at 13; null: it does not answer.
+/// A cell's 3^3 neighborhood, with the cell itself at index 13; whether each of them answers.
 struct Surroundings {
   std::array<bool, 27> known{};
   std::uint8_t steepest = 0;
@@ -69,7 +70,8 @@ Surroundings surroundingsOf(const std::array<const CellBounds*, 27>& near, int x
   return all;
 }
 
-/// [voxels] Of |value| on the faces, edges and corners that a cell shares with cells that answer.
+/// [voxels] Least |value| on the faces, edges and corners that a cell shares with cells that
+/// answer.
 template <std::size_t kSide>
 double leastShared(const ControlValues<kSide>& c, const std::array<bool, 27>& known) noexcept {
   constexpr int kLast = static_cast<int>(kSide) - 1;
@@ -92,7 +94,7 @@ double leastShared(const ControlValues<kSide>& c, const std::array<bool, 27>& kn
 
 template <std::size_t kSide>
 void bound(const ControlValues<kSide>& c, std::size_t cell, CellBounds& to) noexcept {
-  // Of distances no slope is above 16.
+  // Slopes of distances are at most 16.
   const double slope = std::ceil(cells::steepest(cells::slopesOf(c.at)) * kPerSlope + 1e-3);
   to.steepest[cell] = static_cast<std::uint8_t>(std::min(slope, CellBounds::kUnknown - 1.0));
   to.surface[cell] = !(cells::rangeOf(c.at).least() > 0.0);

@@ -10,7 +10,8 @@ constexpr int kSide = Neighborhood::kSide;
 constexpr int kRow = Neighborhood::kRow;
 constexpr int kSlab = Neighborhood::kSlab;
 
-/// A brick's first voxel, -1, in the neighborhood; its last one, 9, is the last but two there.
+/// Index in the neighborhood of the brick's first voxel, -1; its last voxel, 9, is the last but two
+/// there.
 constexpr int kMargin = -1 - Neighborhood::kFirst;
 constexpr int kRows = Brick::kRows;
 constexpr unsigned kAllOfRow = (1U << kRows) - 1U;
@@ -18,10 +19,10 @@ constexpr unsigned kAllOfRow = (1U << kRows) - 1U;
 /// One bit for each voxel of a row of the brick, bit n for voxel n - 1.
 using Flags = std::array<std::array<unsigned, kRows>, kRows>;
 
-/// Where all that a voxel needs is in the band.
+/// The voxels whose filter finds all its inputs in the band.
 struct Reach {
-  Flags near{};  ///< for D
-  Flags far{};   ///< for D(D)
+  Flags near{};  ///< inputs of D
+  Flags far{};   ///< inputs of D(D)
 };
 
 Flags knownOf(const Neighborhood& from) {
@@ -58,8 +59,8 @@ Reach reachOf(const Neighborhood& from) {
   return reach;
 }
 
-/// Second differences along the axes, and their sum D, of one slab of voxels across x. Loops run
-/// over the ends of rows, so that they are long; what comes of that is not looked at.
+/// Second differences along the axes, and their sum D, for one slab of voxels across x. Loops run
+/// on over the ends of rows, so that they are long; the values there are not used.
 struct Differences {
   alignas(64) std::array<double, kSlab> along_x, along_y, along_z, sum;
 };
@@ -79,7 +80,7 @@ void difference(const Neighborhood& from, int slab, Differences& d) {
   }
 }
 
-/// The coefficients of one row, in three qualities [units].
+/// The coefficients of one row, in three degrees of accuracy [units].
 struct RowOfThree {
   alignas(64) std::array<double, kRows> plain, near, far;
 };
@@ -101,7 +102,8 @@ void filterRow(const float* f, std::size_t at, const Differences& before, const 
   }
 }
 
-/// What a voxel counts whose coefficient is not known: its value within `plateau`, or that.
+/// Coefficient of a voxel that the filter cannot reach: its value, limited to `plateau`, if it is
+/// known; otherwise `plateau` with its sign.
 void plainRow(const float* f, unsigned known, float plateau, double* out) {
   for (std::size_t n = 0; n < kRows; ++n) {
     const float within = std::clamp(f[n], -plateau, plateau);
@@ -109,7 +111,8 @@ void plainRow(const float* f, unsigned known, float plateau, double* out) {
   }
 }
 
-/// A cell is known if all its voxels are: from `first` to `last` from its own, along each axis.
+/// A cell is known if all voxels of its stencil are: those from `first` to `last`, relative to its
+/// own, along each axis.
 void markCells(const Flags& flags, int first, int last, Brick& brick) {
   for (int x = 0; x < Brick::kSide; ++x) {
     for (int y = 0; y < Brick::kSide; ++y) {
@@ -128,7 +131,8 @@ void markCells(const Flags& flags, int first, int last, Brick& brick) {
   }
 }
 
-/// Calls row(x, y, f, out) for each row of the brick: f is its first voxel, out its place there.
+/// Calls row(x, y, f, out) for each row of the brick: f is its first voxel in the neighborhood, out
+/// its place in the brick.
 template <class Row>
 void forRows(const Neighborhood& from, Brick& brick, int x, const Row& row) {
   for (int y = 0; y < kRows; ++y) {
@@ -146,7 +150,7 @@ void fillCubic(const Neighborhood& from, float plateau, double units_per_voxel, 
   const double scale = 1.0 / units_per_voxel;
   const Flags known = knownOf(from);
   const Reach reach = reachOf(from);
-  std::array<Differences, 3> slabs;  // those around the present one, in turns
+  std::array<Differences, 3> slabs;  // the three around the present slab, used in turns
   difference(from, kMargin - 1, slabs[0]);
   difference(from, kMargin, slabs[1]);
   for (int x = 0; x < kRows; ++x) {

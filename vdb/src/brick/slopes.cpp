@@ -7,7 +7,8 @@ namespace {
 
 double larger(double a, double b) noexcept { return a < b ? b : a; }
 
-/// The larger of the squares of the differences from a coefficient to the one before and the one
+/// The larger of two squares: of the differences between a coefficient and the ones before and
+/// after it.
 /// after it.
 double largerSquare(float before, float here, float after) noexcept {
   const double middle = here;
@@ -19,7 +20,7 @@ double largerSquare(float before, float here, float after) noexcept {
 }  // namespace
 
 // Row by row, in loops that compilers turn into vector code. Where there is no coefficient before
-// or after, the own one stands for it: no difference.
+// or after, the coefficient itself stands for it: the difference is 0.
 double steepestSquare(const float* first, std::size_t side,
                       const std::array<std::size_t, 2>& strides) noexcept {
   std::array<double, kMostSide> most{};

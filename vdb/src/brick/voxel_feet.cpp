@@ -16,13 +16,13 @@ using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 using Values = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
 
-/// Of a voxel's |gradient| against the mean. Where two faces meet at a right angle it is 0.7
-/// between them.
+/// Least |gradient| of a voxel relative to the mean. Between two faces that meet at a right angle
+/// it is 0.7.
 constexpr double kLeastSlope = 0.9;
-/// Slopes are summed as whole millionths, so that the order of threads does not count.
+/// Slopes are summed as integers, in millionths, so that the order of threads does not matter.
 constexpr double kPerSlope = 1e6;
 
-/// By central differences; 0 at the rim. [voxels per voxel]
+/// [voxels per voxel] Gradient by central differences; 0 at the rim.
 Vec3 gradientAt(const Values& values, const Coord& at, double units_per_voxel) {
   Vec3 gradient(0.0);
   for (int axis = 0; axis < 3; ++axis) {
@@ -60,7 +60,7 @@ double meanSlope(openvdb::tree::LeafManager<const Tree>& leaves, double units_pe
 
 void findVoxelFeet(const Tree& tree, double units_per_voxel, Offsets& offsets) {
   openvdb::tree::LeafManager<const Tree> leaves(tree);
-  // Values that are scaled, as a wrong unit would, have smaller slopes everywhere.
+  // If values are scaled, as by a wrong unit, slopes are smaller everywhere.
   const double least = kLeastSlope * std::min(1.0, meanSlope(leaves, units_per_voxel));
   leaves.foreach ([&](const Leaf& leaf, std::size_t) {
     Offsets::LeafNodeType* const to = offsets.probeLeaf(leaf.origin());

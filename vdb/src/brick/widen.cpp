@@ -1,10 +1,10 @@
-// A wider band for a grid whose own is too narrow to be sampled by the cubic spline.
+// Widens the band of a grid that is too narrow for the cubic spline.
 //
 // First layer by layer: each new voxel takes the nearest of the surface points that its neighbors
-// know, as in the vector distance transform; the old voxels know theirs by their value and its
-// gradient. Then in rounds: a spline through the band so far, and for each new voxel the closest
-// point on its zero set by Newton's method. Near the surface the spline depends little on new
-// voxels, so that a round leaves a few hundredths of the error before it.
+// know, as in the vector distance transform; the old voxels know theirs from value and gradient.
+// Then in rounds: a spline is put through the band so far, and each new voxel searches for the
+// closest point on its zero set by Newton's method. Near the surface the spline depends little on
+// new voxels, so that a round reduces the error to a few hundredths.
 
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Morphology.h>
@@ -34,12 +34,14 @@ using Values = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
 using OffsetsOf = openvdb::tree::ValueAccessor<const Offsets, /*IsSafe=*/false>;
 using Known = openvdb::tree::ValueAccessor<const Mask, /*IsSafe=*/false>;
 
-/// The spline at the surface depends on voxels up to 4.9 off; more are of no use to it.
+/// [voxels] The spline at the surface depends on voxels up to 4.9 off; farther ones do not affect
+/// it.
 constexpr double kLeastWorkWidth = 5.5;
 constexpr int kRounds = 3;
-constexpr double kSamePlace = 0.75;  ///< [voxels] a correction by more leads to another place
+constexpr double kSamePlace = 0.75;  ///< [voxels] a larger correction leads to another place
 constexpr int kNewtonSteps = 12;
-constexpr double kSmooth = 0.3;  ///< [voxels] more is an edge: a smooth surface bends by less
+/// [voxels] A larger difference means an edge: a smooth surface bends by less
+constexpr double kSmooth = 0.3;
 
 Vec3 vec(const Coord& at) { return {at.x(), at.y(), at.z()}; }
 
@@ -103,7 +105,7 @@ class Widening {
     return known;
   }
 
-  /// One layer more. False if there is nothing to add.
+  /// Adds one layer. False if there is nothing to add.
   bool grow() {
     const Mask known = knownVoxels();
     openvdb::tools::dilateActiveValues(tree_, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
@@ -134,8 +136,8 @@ class Widening {
     return grew.combine([](bool a, bool b) { return a || b; });
   }
 
-  /// From a voxel to the surface, as the neighbor tells whose surface point is the nearest: to its
-  /// tangent plane there, straight. Taking the point itself would drag it along, layer after layer.
+  /// From a voxel towards the surface: straight to the tangent plane at the nearest of the
+  /// neighbors' surface points. Taking that point itself would drag it along, layer after layer.
   static Vec3 firstGuess(const Known& is_known, const OffsetsOf& feet, const Coord& at) {
     Vec3 nearest(kNoFoot);
     Vec3 normal(0.0);
@@ -153,8 +155,8 @@ class Widening {
     const double square = glm::dot(normal, normal);
     if (!(square > 0.01)) return nearest;
     const Vec3 straight = normal * (glm::dot(normal, nearest) / square);
-    // Much nearer than the point: the surface ends there in an edge, and the point stays the
-    // nearest.
+    // The plane is much nearer than the point: the surface ends there in an edge, and the point
+    // stays the nearest.
     return glm::length(nearest) - glm::length(straight) < kSmooth ? straight : nearest;
   }
 
@@ -162,7 +164,7 @@ class Widening {
     return static_cast<float>(voxels * units_per_voxel_);
   }
 
-  /// Every new voxel anew, from the spline through what there is.
+  /// Recomputes every new voxel from the spline through all voxels so far.
   void refine() {
     auto band = openvdb::FloatGrid::create(tree_.background());
     band->setTransform(grid_->transformPtr());
@@ -189,8 +191,8 @@ class Widening {
     });
   }
 
-  /// From x to the point q of the spline's zero set that is the closest around `start` [m]; NaN if
-  /// there is none. Newton's method for q + m grad S(q) = x and S(q) = 0.
+  /// Vector from x to the closest point q of the spline's zero set around `start` [m]; NaN if there
+  /// is none. Newton's method for q + m grad S(q) = x and S(q) = 0.
   static Vec3 closestPoint(const BrickField& spline, const Vec3& x, const Vec3& start) {
     Vec3 q = start;
     const double enough = 1e-9 * spline.featureSize();
@@ -216,8 +218,8 @@ class Widening {
     return Vec3(std::nan(""));
   }
 
-  /// A distance grows by no more than the way. What was guessed wrong, outside sharp edges, must
-  /// not claim more room than its neighbors leave: contact would leap into the wall.
+  /// A distance changes by no more than the length of the step. Outside sharp edges, a wrong guess
+  /// must not exceed what the neighbors allow: contact would leap into the wall.
   void lower() {
     const Tree before(tree_);
     forLeaves([&](Leaf& leaf, Offsets::LeafNodeType&) {
@@ -265,7 +267,7 @@ class Widening {
   double units_per_voxel_;
   openvdb::FloatGrid::Ptr grid_;
   Tree& tree_;
-  Mask old_;         ///< voxels of the old band, which keep their values
+  Mask old_;         ///< the voxels of the old band, which keep their values
   Offsets offsets_;  ///< [voxels] from each active voxel to its closest point of the surface
 };
 
@@ -277,7 +279,7 @@ LevelSet widened(const LevelSet& grid, double half_width, const Progress& progre
     throw inputError("bake.half_width", "a band of " + std::to_string(half_width) +
                                             " voxels is asked for; it may have up to 1000");
   }
-  // A float of the background may be a little below the width that was asked for.
+  // The float of the background may be a little below the width that was asked for.
   if (!(info.half_width < half_width - 1e-3)) return grid;
   if (info.half_width < 2.0) {
     throw inputError("vdb.narrow", "the band of grid '" + info.name + "' is " +

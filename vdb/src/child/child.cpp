@@ -31,12 +31,12 @@ constexpr bool kReservesTerabytes = false;
 
 LibraryLimits limits;
 
-/// How a child ended, first in what it writes.
+/// How a child ended: the first byte that it writes.
 enum class Ending : std::uint8_t { kDone, kError, kNoMemory, kOther };
 
 constexpr int kPollInterval = 50;  // [ms]
 
-/// [bytes] of address space in use.
+/// [bytes] of this process's address space in use.
 std::uint64_t ownSize() noexcept {
   std::FILE* const file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr) return 0;
@@ -80,11 +80,11 @@ bool writeAll(int to, const void* data, std::size_t size) noexcept {
 [[noreturn]] void beChild(int to, const ChildTask& task,
                           const std::function<void(ChildWriter&)>& work) noexcept {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  // A stop is the parent's to see; it ends this process.
+  // The parent handles a stop signal, and kills this process.
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_IGN);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal, SIG_DFL);
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // what an assertion says helps nobody
+  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);  // the message of a failed assertion helps nobody
   limitSelf(task);
   ChildWriter result;
   auto ending = Ending::kDone;
@@ -114,7 +114,7 @@ bool writeAll(int to, const void* data, std::size_t size) noexcept {
   _exit(is_sent ? 0 : 1);
 }
 
-/// The child, ended and its remains cleared away, however this is left.
+/// The child process. The destructor kills it if need be and reaps it, however the scope is left.
 class Child {
  public:
   Child(pid_t process, int from) noexcept : process_(process), from_(from) {}
@@ -128,7 +128,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// All that it writes until it closes its end.
+  /// Everything that the child writes until it closes its end.
   std::string readAll() {
     std::string bytes;
     std::vector<char> buffer(std::size_t{1} << 16U);
@@ -144,7 +144,7 @@ class Child {
     }
   }
 
-  /// Its status, as waitpid() tells it.
+  /// Waits for the child; returns its status as waitpid() reports it.
   int wait() noexcept {
     int status = 0;
     while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
@@ -196,7 +196,8 @@ ChildReader runInChild(const ChildTask& task, const std::function<void(ChildWrit
                   "close other programs", task.path});
   };
   if (pipe2(ends, O_CLOEXEC) != 0) throw fail("pipe");
-  std::fflush(nullptr);  // or the child would write what waits in this one's buffers
+  // Otherwise the child would write the text that waits in this process's buffers
+  std::fflush(nullptr);
   const pid_t process = fork();
   if (process < 0) {
     const Error error = fail("fork");

@@ -1,5 +1,5 @@
 #pragma once
-/// Work in a child process with limits, and its result back.
+/// Runs work in a child process with limits, and hands its result back.
 
 #include <cstdint>
 #include <cstring>
@@ -11,7 +11,7 @@
 
 namespace palpate::vdb {
 
-/// What a child hands back, as bytes. Both ends are this process's own code, of one build.
+/// The result of a child, as bytes. Both ends are this process's own code, of one build.
 class ChildWriter {
  public:
   template <typename T>
@@ -38,7 +38,8 @@ class ChildWriter {
   std::string bytes_;
 };
 
-/// Takes in the order of putting. @throws std::out_of_range if there is less than asked for.
+/// Takes values in the order in which they were put. @throws std::out_of_range if fewer bytes are
+/// left than asked for.
 class ChildReader {
  public:
   explicit ChildReader(std::string bytes) : bytes_(std::move(bytes)) {}
@@ -73,18 +74,18 @@ class ChildReader {
 };
 
 struct ChildTask {
-  std::uint64_t file_bytes = 0;  ///< what the limits are measured by
-  std::string code;              ///< of the error if the child dies: "mesh.unreadable"
+  std::uint64_t file_bytes = 0;  ///< size of the file that the limits depend on
+  std::string code;              ///< code of the error if the child dies: "mesh.unreadable"
   std::string library;           ///< "Assimp"
   std::string hint;
   std::string path;
 };
 
-/// Runs `work` in a child with the limits of libraryLimits(), and gives back what it wrote. `work`
-/// must need no thread but its own. An Error that it throws is thrown here. Polls the stop flag
-/// while it waits.
+/// Runs `work` in a child with the limits of libraryLimits(), and returns what the child wrote.
+/// `work` must need no thread but its own. An Error that it throws is thrown here. Polls the stop
+/// flag while it waits.
 /// @throws Error (kInput, `code`) if the child crashed, took too long or too much memory;
-/// kOperation if there can be none; kCancelled.
+/// kOperation if no child can be made; kCancelled.
 [[nodiscard]] ChildReader runInChild(const ChildTask& task,
                                      const std::function<void(ChildWriter&)>& work);
 

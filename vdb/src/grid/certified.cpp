@@ -18,17 +18,18 @@ namespace {
 
 using openvdb::Coord;
 
-/// Where the mean of |gradient| is farther from 1, values are not distances in the grid's own unit.
+/// If the mean of |gradient| differs from 1 by more than this, values are not distances in the
+/// grid's own unit.
 constexpr double kMostSlope = 0.25;
-/// [voxels] Beside the surface, more than that is damage.
+/// [voxels] Beside the surface, a larger contradiction is damage.
 constexpr double kMostStep = 0.25;
-/// [voxels] Values can be off by less than that and contradict no neighbor by more than kSmallStep:
-/// one half of a grid against the other by the square root of 3 less that of 2, a single voxel by
+/// [voxels] A value can be off by less than this and still contradict no neighbor by more than
+/// kSmallStep: one half of a grid against the other half by sqrt(3) - sqrt(2), a single voxel by
 /// half of that.
 constexpr double kUnseen = 0.4;
-/// Fewer active voxels are widened again faster than they are worth keeping.
+/// With fewer active voxels, widening the grid again is faster than keeping it is worth.
 constexpr std::uint64_t kLeastKept = 100'000;
-/// [voxels] What rounding leaves of a bound that was found in floats.
+/// [voxels] Rounding error of a bound that was computed in floats.
 constexpr double kRounding = 1e-4;
 
 class Certifier {
@@ -70,7 +71,7 @@ class Certifier {
 
   static constexpr const char* kNotes = "palpate:notes";
 
-  /// What was done to it goes along.
+  /// The same grid, with the notes on it in its metadata.
   [[nodiscard]] LevelSet noted(const LevelSet& grid) const {
     std::string all;
     for (const std::string& note : out_.notes) all += note + "\n";
@@ -169,7 +170,8 @@ class Certifier {
     grid_ = widened(grid_, kCubicHalfWidth, progress_);
   }
 
-  /// A copy with a wider band, and beside it the ways to the surface, some eight times the grid.
+  /// Memory for a copy with a wider band and for the vectors to the surface: some eight times the
+  /// grid.
   void requireMemory() const {
     constexpr double kShare = 8.0;
     const double bytes = kShare * static_cast<double>(grid_.info().memory);

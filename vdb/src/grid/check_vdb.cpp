@@ -44,7 +44,7 @@ void look(const openvdb::FloatGrid& grid, double meters, GridCheck& check) {
   check.volume = volumeOf(grid, tally, meters);
 }
 
-/// The same as a scene does before the grid is touched.
+/// Certifies the grid as a scene does before the grid is touched.
 void certify(const LevelSet& grid, const std::string& path, const Progress& progress,
              GridCheck& check) {
   CertifyOptions options;
@@ -95,7 +95,7 @@ std::vector<GridCheck> checkVdb(const std::string& path, const std::string& name
                        info.bounds.hi * info.meters_per_unit};
       }
     }
-    // Points and the like are refused by their kind; their trees are not read.
+    // Point grids and the like are refused by their type; their trees are not read.
     const bool is_known = VdbWalk::canWalk(entry.descriptor.gridType());
     const openvdb::GridBase::Ptr grid = is_known ? file.read(entry) : entry.grid;
     if (mayHoldDistances(*grid)) {
@@ -108,7 +108,7 @@ std::vector<GridCheck> checkVdb(const std::string& path, const std::string& name
     } catch (const Error& error) {
       check.refused = error.problem();
     }
-    if (!entry.has_tree) grid->newTree();  // one grid's voxels in memory at a time
+    if (!entry.has_tree) grid->newTree();  // keeps the voxels of only one grid in memory at a time
     checks.push_back(std::move(check));
   }
   report(progress, "check grids", 1.0);

@@ -15,7 +15,7 @@ namespace {
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 
-/// Each step can be undone, so that no difference is lost on the way.
+/// Each step is invertible, so that no difference is lost on the way.
 std::uint64_t mixed(std::uint64_t state, std::uint64_t with) noexcept {
   state = (state ^ with) * 0x9E3779B97F4A7C15U;
   return state ^ (state >> 29);
@@ -28,7 +28,7 @@ std::uint64_t mixed(std::uint64_t state, const openvdb::Coord& at) noexcept {
 
 std::uint64_t bitsOf(double value) noexcept { return std::bit_cast<std::uint64_t>(value); }
 
-/// What is active, and the side of the rest.
+/// Hash of a leaf's active values, and of the sign of the other voxels.
 std::uint64_t hashOf(const Leaf& leaf) noexcept {
   std::uint64_t state = mixed(0x243F6A8885A308D3U, leaf.origin());
   const float* const values = leaf.buffer().data();
@@ -38,7 +38,7 @@ std::uint64_t hashOf(const Leaf& leaf) noexcept {
     for (openvdb::Index n = 0; n < 64; ++n) {
       const float value = values[64 * word + n];
       const bool is_on = (active >> n & 1U) != 0;
-      // Only the side of an inactive voxel can be sampled.
+      // Of an inactive voxel only the sign affects samples.
       state = mixed(state, is_on ? std::bit_cast<std::uint32_t>(value)
                                  : static_cast<std::uint32_t>(value < 0.0F ? 1 : 2));
     }
@@ -46,7 +46,7 @@ std::uint64_t hashOf(const Leaf& leaf) noexcept {
   return state;
 }
 
-/// A leaf without active voxels and of one side says what a tile of it says.
+/// Whether a leaf could as well be a tile: no active voxels, and one sign.
 bool isPlain(const Leaf& leaf) noexcept {
   if (!leaf.isEmpty()) return false;
   const float* const values = leaf.buffer().data();
@@ -65,7 +65,8 @@ std::uint64_t hashOfTile(const openvdb::Coord& origin, openvdb::Index size, floa
 
 }  // namespace
 
-// Sums of leaves and tiles, so that their order does not count. Outside tiles count as empty space.
+// Hashes of leaves and tiles are summed, so that their order does not matter. Outside tiles count
+// as empty space.
 std::string contentHash(const LevelSet& grid) {
   const openvdb::FloatGrid& floats = *grid.impl().grid;
   const Tree& tree = floats.tree();

@@ -20,7 +20,8 @@ using openvdb::Coord;
 using openvdb::CoordBBox;
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
-/// Not registered with its tree: registering takes a lock. The tree never changes.
+/// This accessor is not registered with its tree, because registering takes a lock. It need not be:
+/// the tree never changes.
 using Accessor = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
 
 /// Eight voxels around a point: bit 2 of the index steps along x, bit 1 along y, bit 0 along z.
@@ -52,8 +53,9 @@ Cell readCell(const Accessor& accessor, const Coord& base) noexcept {
   return cell;
 }
 
-/// Trilinear interpolation of the voxels: one continuous function everywhere. Outside the band the
-/// voxels stand at a plateau, and outside of all voxels it rises with the distance to them.
+/// Trilinear interpolation of the voxels: one continuous function everywhere. Voxels outside the
+/// band count as a constant plateau; outside the box of all voxels the value rises with the
+/// distance to that box.
 class AccessorField final : public Field {
  public:
   explicit AccessorField(LevelSet grid)
@@ -64,10 +66,10 @@ class AccessorField final : public Field {
         meters_per_unit_(grid_.info().meters_per_unit),
         plateau_(plateauOf(grid_.info(), Sampler::kAccessor)) {
     const Survey survey = surveyGrid(*grid_.impl().grid, plateau_);
-    // The slope of a distance is 1, though a grid whose surface is flat may measure less.
+    // The slope of a distance is 1, though a grid whose surface is flat may have less.
     lipschitz_ = std::max(1.0, survey.steepest);
-    // A cell is negative somewhere only if a corner is; it has a known voxel only if a corner is
-    // one.
+    // A cell has negative values only if one of its corners is negative, and a known voxel only if
+    // one of its corners is known.
     if (!survey.inside.empty()) bounds_ = around(survey.inside);
     reach_ = bounds_.unitedWith(survey.known.empty() ? Box3{} : around(survey.known));
   }
@@ -105,7 +107,7 @@ class AccessorField final : public Field {
 
   [[nodiscard]] FieldSample interpolate(const std::array<float, 8>& v,
                                         const Vec3& t) const noexcept {
-    // Along z, then y, then x; each step keeps the differences that make the gradient.
+    // Interpolate along z, then y, then x; each step keeps the differences that make the gradient.
     const auto mix = [](double a, double b, double s) { return a + s * (b - a); };
     double along_z[4], dz[4];
     for (std::size_t n = 0; n < 4; ++n) {
@@ -120,13 +122,13 @@ class AccessorField final : public Field {
     return {mix(near, far, t.x) * meters_per_unit_, slope * (meters_per_unit_ / voxel_), true};
   }
 
-  /// Where no voxel is near; also where p is not a number.
+  /// The sample where no voxel is near; also for p that is not a number.
   [[nodiscard]] FieldSample beyond(const Vec3& p) const noexcept {
     const double plateau = plateau_ * meters_per_unit_;
     if (!isFinite(p)) return {std::numeric_limits<double>::quiet_NaN(), Vec3(0.0), false};
     if (reach_.isEmpty()) return {plateau, Vec3(0.0), false};
     const Vec3 out = glm::max(glm::max(reach_.lo - p, p - reach_.hi), Vec3(0.0));
-    // hypot, because squares overflow far away.
+    // hypot, because squares overflow for far points.
     return {plateau + std::hypot(out.x, out.y, out.z), Vec3(0.0), false};
   }
 
@@ -141,7 +143,7 @@ class AccessorField final : public Field {
   Box3 reach_;  ///< [m] every cell beyond it is unknown and outside
 };
 
-/// Bricks of what lies in the box; all of them if nothing lies out of it.
+/// Bricks of the part of the grid in the box; all of them if nothing lies outside it.
 FieldPtr brickField(const LevelSet& grid, Sampler sampler, const Box3& within,
                     std::uint64_t max_memory) {
   const Box3 bounds = grid.info().bounds;
@@ -161,7 +163,7 @@ FieldPtr gridField(const LevelSet& grid, Sampler sampler, const Box3& within,
   if (sampler == Sampler::kAccessor) return std::make_shared<AccessorField>(grid);
   const bool is_narrow = sampler == Sampler::kCubic && isTooNarrow(grid.info());
   const LevelSet wide = is_narrow ? widened(grid, kCubicHalfWidth) : grid;
-  // The grid stays while bricks are made of it.
+  // The grid stays in memory while bricks are made from it.
   const std::uint64_t limit = memoryLimit(max_memory);
   const std::uint64_t taken = wide.info().memory;
   return brickField(wide, sampler, within, limit > taken ? limit - taken : 1);

@@ -104,7 +104,7 @@ Image imageOf(const openvdb::GridBase& grid, double meters, const std::string& p
   return image;
 }
 
-/// As floats; null if it is a grid of something else.
+/// The grid as floats; null if its values are not numbers.
 openvdb::FloatGrid::Ptr asFloats(const openvdb::GridBase::Ptr& grid) {
   if (const auto doubles = openvdb::gridPtrCast<openvdb::DoubleGrid>(grid)) {
     return std::make_shared<openvdb::FloatGrid>(*doubles);

@@ -55,7 +55,8 @@ class LeafCheck {
       tally.marked_inside += 1.0;
     }
     std::array<float, 6> beside{};
-    // What is active and constant, as some tools leave the inside, is not a band.
+    // Active voxels of constant value, with which some tools fill the inside, are not part of the
+    // band.
     const float band = grid_.background();
     bool in_band = active && std::abs(value) < band;
     bool breaks = false;
@@ -64,7 +65,7 @@ class LeafCheck {
       const bool other_active = accessor.probeValue(there, beside[n]);
       in_band = in_band && other_active && std::abs(beside[n]) < band;
       if (active && other_active) continue;
-      // Told at the negative one of the two, unless that is not a voxel of a leaf.
+      // A break is counted at the negative voxel of the two, unless that voxel is not in a leaf.
       const bool is_break = (value < 0.0F) != (beside[n] < 0.0F);
       breaks = breaks || (is_break && (value < 0.0F || accessor.probeConstLeaf(there) == nullptr));
     }
@@ -97,7 +98,7 @@ class LeafCheck {
   double voxel_;
 };
 
-/// Negative tiles, which no leaf tells of.
+/// Adds negative tiles, which no leaf counts.
 void addTiles(const openvdb::FloatGrid& grid, GridTally& tally) {
   const Accessor accessor(grid.tree());
   auto tile = grid.tree().cbeginValueAll();

@@ -1,5 +1,6 @@
 #pragma once
-/// One look at all voxels of a grid of distances: what checkVdb() tells, and what is done about it.
+/// One pass over all voxels of a grid of distances: the findings that checkVdb() reports and that
+/// repairs rely on.
 
 #include <openvdb/openvdb.h>
 
@@ -7,7 +8,7 @@
 
 namespace palpate::vdb {
 
-/// Voxels found wrong in some order, and the first of them.
+/// Voxels with one defect, in any order, and the first of them.
 struct FoundVoxels {
   std::uint64_t voxels = 0;
   openvdb::Coord first;
@@ -21,7 +22,7 @@ struct FoundVoxels {
   }
 };
 
-/// What one leaf, or the whole grid, has; GridCheck says what is meant.
+/// The findings in one leaf, or in the whole grid; GridCheck explains each of them.
 struct GridTally {
   FoundVoxels not_finite;
   FoundVoxels sign_breaks;
@@ -29,11 +30,11 @@ struct GridTally {
   std::uint64_t inside_voxels = 0;
   std::uint64_t gradients = 0;
   double sum = 0.0;
-  double squares = 0.0;  ///< of the differences to 1
+  double squares = 0.0;  ///< of the differences of |gradient| to 1
   double worst = 1.0;
   openvdb::Coord worst_at;
   double inside = 0.0;         ///< [voxels]
-  double marked_inside = 0.0;  ///< [voxels] of these, the ones that are not active
+  double marked_inside = 0.0;  ///< [voxels] the part of `inside` that is not active
 
   void add(const GridTally& other);
 };

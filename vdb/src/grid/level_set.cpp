@@ -14,7 +14,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// OpenVDB's own entries, which a LevelSetInfo tells in other ways or which a file recomputes.
+/// OpenVDB's own entries, which LevelSetInfo holds in other members or which a file recomputes.
 bool isReserved(const std::string& key) {
   return key == openvdb::GridBase::META_GRID_NAME || key == openvdb::GridBase::META_GRID_CLASS ||
          key == openvdb::GridBase::META_GRID_CREATOR || key == "length_unit" ||
@@ -26,7 +26,7 @@ double uniformScale(const openvdb::math::Transform& transform) {
   if (!transform.isLinear()) return 0.0;
   const openvdb::Mat4d m = transform.baseMap()->getAffineMap()->getMat4();
   const double scale = m(0, 0);
-  // A product of scales and rotations by 0 leaves rounding of this size.
+  // A product of scales and of rotations by 0 has rounding errors of this size.
   const double tolerance = 1e-9 * scale;
   if (!(scale > 0.0) || !std::isfinite(scale)) return 0.0;
   for (int row = 0; row < 3; ++row) {
@@ -54,7 +54,7 @@ Active activeOf(const openvdb::FloatTree& tree) {
     tree.evalActiveVoxelBoundingBox(all.box);
     return all;
   }
-  // OpenVDB's box is found by one thread.
+  // OpenVDB finds this box on one thread only.
   std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
   tree.getNodes(leaves);
   return tbb::parallel_reduce(
@@ -81,7 +81,7 @@ LevelSetInfo inspect(const openvdb::FloatGrid& grid, const std::string& length_u
   info.length_unit = length_unit;
   info.meters_per_unit = meters_per_unit;
   info.voxel_size = scale * meters_per_unit;
-  // The background is a float: no more than a float's digits of the quotient mean anything.
+  // The background is a float: digits of the quotient beyond those of a float mean nothing.
   info.half_width = static_cast<float>(static_cast<double>(grid.background()) / scale);
   const Active active = activeOf(grid.tree());
   info.active_voxels = active.voxels;

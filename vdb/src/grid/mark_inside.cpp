@@ -17,12 +17,12 @@ std::uint64_t markInside(openvdb::FloatGrid& grid, double meters_per_unit,
                          const std::string& path) {
   const GridTally before = tallyOf(grid);
   if (before.sign_breaks.voxels == 0) return 0;
-  // Leaves and nodes without active voxels would keep the side that they say, right or wrong.
+  // Otherwise leaves and nodes without active voxels would keep their sign, right or wrong.
   grid.tree().voxelizeActiveTiles();
   openvdb::tools::pruneInactive(grid.tree());
   openvdb::tools::signedFloodFill(grid.tree());
-  // Sides now go from voxel to voxel up to the band. Where none breaks, each space between has one
-  // side, that of the band all around it; where the band has a hole, some must.
+  // Signs have now spread from voxel to voxel up to the band. If there is no sign break, each space
+  // has one sign, that of the band around it; where the band has a hole, there must be a break.
   const GridTally after = tallyOf(grid);
   if (after.sign_breaks.voxels > 0) {
     const openvdb::Vec3d p = meters_per_unit * grid.indexToWorld(after.sign_breaks.first);

@@ -1,5 +1,5 @@
 #pragma once
-/// The inside of a band whose voxels beyond it do not tell.
+/// Sets the signs inside a band whose voxels beyond the band do not tell the inside.
 
 #include <openvdb/openvdb.h>
 
@@ -8,9 +8,9 @@
 
 namespace palpate::vdb {
 
-/// How many voxels that are not active changed sides.
+/// Returns how many voxels that are not active changed sides.
 /// @throws Error (kInput, vdb.torn) where a hole in the band joins inside and outside; `path` is
-/// the file to name. `grid` is then of no use.
+/// the file to name. `grid` is then unusable.
 std::uint64_t markInside(openvdb::FloatGrid& grid, double meters_per_unit, const std::string& path);
 
 }  // namespace palpate::vdb

@@ -15,7 +15,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// What to do about a grid that is not of floats.
+/// The remedy for a grid that does not hold floats.
 std::string typeHint(const std::string& type) {
   if (type == "DoubleGrid") return "palpate convert FILE.vdb -o OTHER.vdb makes a FloatGrid of it";
   if (type.starts_with("Vec")) return "a surface needs one number a voxel, not a vector";
@@ -31,7 +31,7 @@ bool isUnsigned(const openvdb::GridBase& grid) {
   return distance && distance->value() == kUnsignedDistance;
 }
 
-/// A level set of floats, or why not.
+/// Throws with the reason if the grid is not a level set of floats.
 void requireLevelSet(const openvdb::GridBase& grid, UnknownClass unknown_class,
                      const std::string& path) {
   const std::string name = "grid '" + grid.getName() + "'";
@@ -70,7 +70,7 @@ void requireLevelSet(const openvdb::GridBase& grid, UnknownClass unknown_class,
   }
 }
 
-/// Parts of a tree lie at multiples of their size. One that damage has put elsewhere cannot be
+/// Nodes of a tree lie at multiples of their size. A node that damage has put elsewhere cannot be
 /// found again.
 void requireSoundBlocks(const openvdb::FloatGrid& grid, const std::string& path) {
   std::atomic<bool> not_finite = false;
@@ -98,10 +98,11 @@ void requireSoundBlocks(const openvdb::FloatGrid& grid, const std::string& path)
   }
 }
 
-/// Some tools leave all of the inside active, at minus the background. No band is there.
+/// Some tools leave all of the inside active, at minus the background. Such voxels are not part of
+/// the band.
 void endBandAtItsWidth(openvdb::FloatGrid& grid) {
   const float width = grid.background();
-  if (!(width > 0.0F)) return;  // refused later
+  if (!(width > 0.0F)) return;  // other code refuses this later
   openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid.tree());
   leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
     for (auto voxel = leaf.beginValueOn(); voxel; ++voxel) {
@@ -115,7 +116,7 @@ void endBandAtItsWidth(openvdb::FloatGrid& grid) {
   }
 }
 
-/// Leaves and nodes are known before the values of any are read.
+/// Leaves and nodes are counted before any of their values are read.
 void requireMemory(VdbFile& file, const VdbArchive::Entry& entry, std::uint64_t limit,
                    const std::string& path) {
   const std::uint64_t bytes = file.memoryOf(entry);
@@ -128,7 +129,7 @@ void requireMemory(VdbFile& file, const VdbArchive::Entry& entry, std::uint64_t 
        "allow more, or put its surface into larger voxels: palpate convert --voxel SIZE", path});
 }
 
-/// The same problem, with the file it is in.
+/// Throws the same problem, with the name of its file.
 [[noreturn]] void rethrowWithFile(const Error& error, const std::string& path) {
   Problem problem = error.problem();
   problem.file = path;
@@ -174,7 +175,7 @@ LevelSet readVdb(const std::string& path, const std::string& name,
                  std::uint64_t max_memory) {
   VdbFile file(path);
   const VdbArchive::Entry& entry = file.choose(name);
-  // Errors that the head of the grid shows come before its voxels are read.
+  // Refuse errors that the grid's header shows before reading voxels.
   requireLevelSet(*entry.grid, unknown_class, path);
   static_cast<void>(unitOf(*entry.grid, unit_if_missing, path));
   requireMemory(file, entry, memoryLimit(max_memory), path);

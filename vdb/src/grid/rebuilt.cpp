@@ -19,10 +19,12 @@ using openvdb::Coord;
 using Tree = openvdb::FloatTree;
 using Mask = openvdb::MaskTree;
 
-/// [voxels] of the band that is kept: a closest point is found by a voxel and all six around it.
+/// [voxels] Half width of the band that is kept: a closest point follows from a voxel and all six
+/// around it.
 constexpr double kKept = 2.5;
 
-/// Voxels that cannot be distances beside one of their neighbors, and all next to such a voxel.
+/// Voxels whose value cannot be a distance, given that of one of their neighbors; and all voxels
+/// next to such a voxel.
 Mask doubtful(const Tree& tree, double units_per_voxel) {
   Mask mask(tree, false, false, openvdb::TopologyCopy());
   openvdb::tree::LeafManager<Mask> leaves(mask);

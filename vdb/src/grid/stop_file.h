@@ -1,5 +1,5 @@
 #pragma once
-/// A file that stops being read when the user asks for it, whatever library reads it.
+/// A file buffer that stops reading when the user asks to stop, whatever library reads from it.
 
 #include <fstream>
 
@@ -7,7 +7,8 @@
 
 namespace palpate::vdb {
 
-/// A stream over it must have its exceptions on: the Error of pollStop() then comes through it.
+/// A stream over it must have its exceptions enabled, so that the Error of pollStop() comes
+/// through.
 class StopBuffer final : public std::filebuf {
  protected:
   int_type underflow() override {

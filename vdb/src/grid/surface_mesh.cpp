@@ -9,8 +9,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Newton's method along the gradient: from the cell's middle, a voxel away at most, three steps
-/// are enough for a thousandth of a voxel on any field that is nearly a distance.
+/// Newton's method along the gradient. The start is in the middle of the cell, at most a voxel
+/// away: three steps reach a thousandth of a voxel on any field that is nearly a distance.
 Vec3 ontoSurface(const Field& field, const Vec3& from) {
   constexpr int kSteps = 4;
   const double voxel = field.featureSize();
@@ -18,8 +18,7 @@ Vec3 ontoSurface(const Field& field, const Vec3& from) {
   for (int step = 0; step < kSteps; ++step) {
     const FieldSample sample = field.sample(p);
     const double square = glm::dot(sample.gradient, sample.gradient);
-    // At an edge of the solid, where the gradient all but vanishes, the cell's own vertex is
-    // better.
+    // At an edge of the solid, where the gradient nearly vanishes, the cell's own vertex is better.
     if (!sample.in_band || !(square > 0.04)) return from;
     p -= sample.gradient * (sample.value / square);
     if (!(glm::length(p - from) < voxel)) return from;
@@ -78,7 +77,7 @@ Mesh surfaceMesh(const LevelSet& grid, const Progress& progress) {
       mesh.triangles.push_back({q[1], q[2], q[3]});
     }
   }
-  // Which way OpenVDB winds is not promised; a solid's volume is positive.
+  // OpenVDB does not promise an orientation; a solid's volume has to be positive.
   if (signedVolume(mesh) < 0.0) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   }

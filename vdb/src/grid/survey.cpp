@@ -19,11 +19,11 @@ using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 using Accessor = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
 
-constexpr std::size_t kSide = 10;  ///< a leaf and one voxel more on every side
+constexpr std::size_t kSide = 10;  ///< a leaf and one more voxel on every side
 constexpr std::size_t kStepX = kSide * kSide;
 constexpr std::size_t kStepY = kSide;
 
-/// The values that interpolation takes, around one leaf.
+/// The values around one leaf that interpolation uses.
 struct Block {
   std::array<float, kSide * kSide * kSide> values;
 };
@@ -78,7 +78,7 @@ Survey surveyGrid(const openvdb::FloatGrid& grid, float plateau) {
     all.known.expand(part.survey.known);
     steepest_square = std::max(steepest_square, part.steepest_square);
   }
-  // The margin is for what rounding does to the samples.
+  // The margin covers the rounding of samples.
   all.steepest = std::sqrt(steepest_square) * (1.0 + 1e-6) / grid.voxelSize().x();
   auto tiles = grid.tree().cbeginValueAll();
   tiles.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);

@@ -11,7 +11,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// Nothing of a tree is read before its lengths are known to be sound.
+/// Checks every length in a tree before anything of it is read.
 void checkTreeOf(std::istream& stream, const VdbArchive::Entry& entry, bool with_voxels) {
   VdbWalk(stream).checkTree(entry.descriptor.getGridPos(), entry.descriptor.gridType(),
                             entry.descriptor.saveFloatAsHalf(), with_voxels);
@@ -26,7 +26,7 @@ std::string VdbArchive::Entry::name() const {
 void VdbArchive::writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids) {
   initializeOpenVdb();
   setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
-  setInstancingEnabled(false);  // so that any reader can take any grid by itself
+  setInstancingEnabled(false);  // so that a reader can take each grid by itself
   write(stream, grids, /*seekable=*/true);
 }
 

@@ -1,8 +1,7 @@
 #pragma once
-/// .vdb streams with errors. OpenVDB's own io::File never looks at its streams, so that a full disk
-/// and a file cut short pass for success; here every short read or write throws
-/// std::ios_base::failure, and every length is checked (vdb_walk.h) before OpenVDB takes it for
-/// true.
+/// .vdb streams with errors. OpenVDB's own io::File ignores the state of its streams, so that a
+/// full disk or a file cut short goes unnoticed. Here every short read or write throws
+/// std::ios_base::failure, and every length is checked (vdb_walk.h) before OpenVDB uses it.
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -19,7 +18,7 @@ class VdbArchive : public openvdb::io::Archive {
   /// `stream` must be seekable and have its exceptions on; the bytes are those of io::File.
   void writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids);
 
-  /// One grid of a file: name, metadata and transform, and its tree once it was asked for.
+  /// One grid of a file: name, metadata and transform, and its tree once it has been read.
   struct Entry {
     openvdb::io::GridDescriptor descriptor;
     openvdb::GridBase::Ptr grid;
@@ -27,13 +26,14 @@ class VdbArchive : public openvdb::io::Archive {
     [[nodiscard]] std::string name() const;
   };
 
-  /// What is in the file. `stream` must be seekable and have its exceptions on.
-  /// @throws std::exception of many kinds for what is not a .vdb file or a damaged one.
+  /// Reads the list of grids. `stream` must be seekable and have its exceptions on.
+  /// @throws exceptions of many types, all derived from std::exception, for a file that is not .vdb
+  /// or is damaged.
   void open(std::istream& stream);
   [[nodiscard]] const std::vector<Entry>& entries() const noexcept { return entries_; }
 
-  /// Reads the whole tree of an entry, also if that is another entry's. @throws std::exception as
-  /// open() does.
+  /// Reads the whole tree of an entry, also if the entry shares another entry's tree. @throws
+  /// std::exception as open() does.
   openvdb::GridBase::Ptr readGridOf(std::istream& stream, const Entry& entry) const;
 
   /// Reads an entry's tree without the values of its leaves.

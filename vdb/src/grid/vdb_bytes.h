@@ -1,5 +1,5 @@
 #pragma once
-/// Bytes of a stream, taken in order through a window; what is passed over is not read.
+/// Reads bytes of a stream in order through a window; bytes that are skipped are not read.
 
 #include <cstdint>
 #include <cstring>
@@ -54,7 +54,7 @@ class VdbBytes {
     take(&value, sizeof value);
     return value;
   }
-  /// A length of 32 bits and as many bytes; no more than `longest` of them.
+  /// Reads a 32-bit length, then a text of that many bytes; at most `longest` of them.
   std::string takeText(std::uint32_t longest) {
     const auto length = take<std::uint32_t>();
     if (length > longest || length > left()) {
@@ -82,7 +82,7 @@ class VdbBytes {
   std::istream& stream_;
   std::int64_t size_ = 0;
   std::int64_t at_ = 0;
-  std::int64_t begin_ = 0;  ///< of the window in the file
+  std::int64_t begin_ = 0;  ///< where the window begins in the file
   std::vector<char> window_;
 };
 

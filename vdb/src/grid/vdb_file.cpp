@@ -90,7 +90,7 @@ std::string typeOf(const openvdb::GridBase& grid) {
     table[openvdb::Vec3SGrid::gridType()] = "Vec3SGrid";
     table[openvdb::Vec3DGrid::gridType()] = "Vec3DGrid";
     table[openvdb::Vec3IGrid::gridType()] = "Vec3IGrid";
-    // By name, as their headers cost as much again as all of OpenVDB's others.
+    // By name, because including their headers costs as much again as all others of OpenVDB.
     table["Tree_ptdataidx32_5_4_3"] = "PointDataGrid";
     table["Tree_ptidx32_5_4_3"] = "PointIndexGrid";
     return table;
@@ -156,7 +156,7 @@ std::uint64_t VdbFile::memoryOf(const VdbArchive::Entry& entry) {
 VdbGridSummary VdbFile::summaryOf(const VdbArchive::Entry& entry) {
   return readingFrom(path_, [&] {
     openvdb::GridBase::Ptr grid = entry.grid;
-    // The half width is the background, which only the tree knows.
+    // The half width follows from the background, which is stored in the tree only.
     if (grid->isType<openvdb::FloatGrid>()) grid = VdbArchive::readTopologyOf(stream_, entry);
     return VdbGridSummary{entry.name(), typeOf(*grid), classOf(*grid), infoOf(*grid, entry.name())};
   });

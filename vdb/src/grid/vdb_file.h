@@ -1,5 +1,5 @@
 #pragma once
-/// A .vdb file that is open for reading: what is in it, with one kind of error for what is damaged.
+/// A .vdb file that is open for reading: its grids, with one kind of error for damage.
 
 #include <exception>
 #include <ios>
@@ -14,7 +14,8 @@
 
 namespace palpate::vdb {
 
-/// Runs `read`, and says in one way what a damaged file makes OpenVDB throw.
+/// Runs `read`, and turns any exception that OpenVDB throws for a damaged file into one kind of
+/// error.
 template <typename Read>
 auto readingFrom(const std::string& path, const Read& read) {
   const char* const hint = "the file may be damaged or cut short; copy or write it again";
@@ -40,15 +41,15 @@ class VdbFile {
   [[nodiscard]] const std::vector<VdbArchive::Entry>& entries() const noexcept {
     return archive_.entries();
   }
-  /// By name, or the only one if that is empty. @throws Error (kInput, vdb.no_grid,
-  /// vdb.which_grid).
+  /// The grid called `name`, or the only one if `name` is empty. @throws Error (kInput,
+  /// vdb.no_grid, vdb.which_grid).
   [[nodiscard]] const VdbArchive::Entry& choose(const std::string& name) const;
-  /// With all its voxels. @throws Error (kInput, vdb.unreadable).
+  /// Reads the grid with all its voxels. @throws Error (kInput, vdb.unreadable).
   [[nodiscard]] openvdb::GridBase::Ptr read(const VdbArchive::Entry& entry);
-  /// [bytes] What the grid takes when it is read. Reads no voxels. @throws Error (kInput,
-  /// vdb.unreadable).
+  /// [bytes] The memory that the grid will take when it is read. Reads no voxels. @throws Error
+  /// (kInput, vdb.unreadable).
   [[nodiscard]] std::uint64_t memoryOf(const VdbArchive::Entry& entry);
-  /// As listVdb() tells it; reads no voxels. @throws Error (kInput, vdb.unreadable).
+  /// One entry of listVdb(); reads no voxels. @throws Error (kInput, vdb.unreadable).
   [[nodiscard]] VdbGridSummary summaryOf(const VdbArchive::Entry& entry);
 
  private:
@@ -62,13 +63,13 @@ class VdbFile {
 [[nodiscard]] std::string typeOf(const openvdb::GridBase& grid);
 /// "level set", "fog volume", "staggered", "unknown".
 [[nodiscard]] std::string classOf(const openvdb::GridBase& grid);
-/// The file's own, or else `unit_if_missing`. @throws Error (kInput, vdb.no_unit) if there is
-/// neither.
+/// The grid's own length unit, or else `unit_if_missing`. @throws Error (kInput, vdb.no_unit) if
+/// there is neither.
 [[nodiscard]] std::string unitOf(const openvdb::GridBase& grid, const std::string& unit_if_missing,
                                  const std::string& path);
 
-/// What readVdb() makes of a grid, or why it does not. May change the grid's metadata.
-/// @throws Error (kInput, vdb.*).
+/// The level set that readVdb() returns for a grid. May change the grid's metadata.
+/// @throws Error (kInput, vdb.*) with the reason if the grid cannot be used.
 [[nodiscard]] LevelSet acceptLevelSet(const openvdb::GridBase::Ptr& base,
                                       const std::string& unit_if_missing,
                                       UnknownClass unknown_class, const std::string& path);

@@ -20,7 +20,7 @@ constexpr std::uint32_t kOldest = 222;
 constexpr std::uint32_t kNewest = openvdb::OPENVDB_FILE_VERSION;
 constexpr std::int64_t kUuidBytes = 36;
 constexpr std::uint32_t kLongestName = 1U << 16U;
-constexpr std::uint32_t kLongestText = 1U << 26U;  ///< of metadata, which may be whole documents
+constexpr std::uint32_t kLongestText = 1U << 26U;  ///< of metadata, which may hold whole documents
 constexpr std::uint32_t kZip = 1;
 constexpr std::uint32_t kActiveMask = 2;
 constexpr std::uint32_t kBlosc = 4;
@@ -29,7 +29,7 @@ constexpr std::int32_t kRootChild = 4096;  ///< voxels along a child of the root
 
 [[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
 
-/// Bytes of a voxel's value, and of the same as half floats.
+/// Bytes of a voxel's value, and of the same value as half floats.
 struct ValueKind {
   std::int64_t bytes;
   std::int64_t half_bytes;
@@ -60,7 +60,8 @@ std::optional<ValueKind> kindOf(std::string_view grid_type) {
   return found == kinds.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// Bytes of metadata whose type fixes them: OpenVDB reads so many, whatever the file says.
+/// Size of metadata whose type fixes it: OpenVDB reads that many bytes, whatever size the file
+/// states.
 std::optional<std::uint32_t> fixedBytes(const std::string& type) {
   static const std::map<std::string, std::uint32_t> sizes = {
       {"bool", 1},   {"int32", 4},  {"int64", 8},  {"float", 4},  {"double", 8}, {"vec2i", 8},
@@ -143,12 +144,13 @@ class VdbWalk::Impl {
     }
   }
 
-  /// Two lists of one entry a leaf, each a count of bytes (0: not packed) and as many of them.
+  /// Two lists with an entry for each leaf; each list is a count of packed bytes (0: not packed),
+  /// and its bytes.
   void delayedLoad(std::uint32_t size, std::int64_t end) {
     if (size == 0) return;  // a tree without leaves
     if (size < 4) fail("an index of leaves that is cut short");
     const auto leaves = bytes_.take<std::uint32_t>();
-    // Every leaf has a mask of 64 bytes in the tree's shape and one among its values.
+    // Every leaf has two masks of 64 bytes, one in the tree's topology and one among its values.
     if (leaves > bytes_.left() / 64) fail("an index of more leaves than the file can hold");
     for (const std::int64_t entry : {1, 8}) {
       if (bytes_.position() >= end) break;
@@ -168,7 +170,7 @@ class VdbWalk::Impl {
     std::string type = bytes_.takeText(kLongestName);
     const bool is_instance = !bytes_.takeText(kLongestName).empty();
     const auto grid = bytes_.take<std::int64_t>();
-    static_cast<void>(bytes_.take<std::int64_t>());  // where its voxels begin; nobody asks
+    static_cast<void>(bytes_.take<std::int64_t>());  // where its voxels begin; not needed
     const auto end = bytes_.take<std::int64_t>();
     if (!has_offsets_) {
       gridHead();
@@ -178,8 +180,8 @@ class VdbWalk::Impl {
       if (!is_instance) treeHere(type, is_half, true);
       return;
     }
-    // Each grid must lie behind the one before, or a damaged file could keep its reader here for
-    // ever.
+    // Each grid must lie behind the one before; otherwise a damaged file could keep its reader here
+    // for ever.
     if (grid < bytes_.position() || end <= grid) fail("its table of contents makes no sense");
     bytes_.seek(grid);
     gridHead();
@@ -214,7 +216,7 @@ class VdbWalk::Impl {
     kind_ = *kind;
     is_half_ = is_half && kind_.half_bytes != kind_.bytes;
     leaves_.clear();
-    bytes_.skip(4);            // a count of buffers, of which there is one
+    bytes_.skip(4);            // a count of buffers, which is always one
     bytes_.skip(kind_.bytes);  // the background
     const auto tiles = bytes_.take<std::uint32_t>();
     const auto children = bytes_.take<std::uint32_t>();
@@ -226,7 +228,7 @@ class VdbWalk::Impl {
     using Place = std::array<std::int32_t, 3>;
     std::optional<Place> last;
     for (std::uint32_t i = 0; i < children; ++i) {
-      // OpenVDB keeps children in order, writes them so and reads their voxels so.
+      // OpenVDB keeps children sorted, and writes and reads them in that order.
       const Place place = rootPlace();
       if (last && !(*last < place)) fail("parts of its tree that are out of order");
       last = place;
@@ -273,7 +275,7 @@ class VdbWalk::Impl {
     }
   }
 
-  /// As OpenVDB packs `count` values, of which `active` ones are active.
+  /// Checks `count` values as OpenVDB packs them; `active` is the mask of the active ones.
   void values(std::size_t count, const std::vector<std::uint64_t>& active) {
     constexpr int kMaskAndOne = 4;
     constexpr int kMaskAndTwo = 5;
@@ -295,7 +297,7 @@ class VdbWalk::Impl {
     if ((compression_ & (kBlosc | kZip)) == 0) return bytes_.skip(plain);
     const auto packed = bytes_.take<std::int64_t>();
     if (packed <= 0) {
-      // Not packed, and so many that OpenVDB reads them before it compares.
+      // Not packed; OpenVDB reads that many bytes before it compares the count.
       if (packed != -plain) fail("voxels that are not as many as their tree has");
       return bytes_.skip(plain);
     }
@@ -305,14 +307,14 @@ class VdbWalk::Impl {
     bytes_.seek(end);
   }
 
-  /// What Blosc believes of its own head: how many bytes there are, and how many they become.
+  /// Checks the header that Blosc trusts: how many bytes there are, and how many they unpack to.
   void bloscHead(std::int64_t packed, std::int64_t plain) {
     if (packed < kBloscHead) fail("packed voxels that are cut short");
     bytes_.skip(4);
     const std::int64_t unpacked = bytes_.take<std::uint32_t>();
     const std::int64_t block = bytes_.take<std::uint32_t>();
     const std::int64_t whole = bytes_.take<std::uint32_t>();
-    // OpenVDB pads short buffers before it packs them, and takes the padding off again.
+    // OpenVDB pads short buffers before it packs them, and removes the padding after unpacking.
     constexpr std::int64_t kPadded = 128;
     const bool fits = unpacked == plain || (plain < kPadded && unpacked == kPadded);
     if (!fits || whole != packed || block > std::max<std::int64_t>(unpacked, 1)) {

@@ -1,5 +1,5 @@
 #pragma once
-/// A walk through a .vdb file that checks every length in it before OpenVDB sees any.
+/// Walks through a .vdb file and checks every length in it before OpenVDB reads it.
 
 #include <cstdint>
 #include <iosfwd>
@@ -8,13 +8,13 @@
 
 namespace palpate::vdb {
 
-/// OpenVDB 10 believes what a file says: lengths of texts and of packed chunks go to its
-/// allocations and reads as they are, and a damaged one writes past the end of a leaf. This walk
-/// reads the same bytes in the same order without building anything: whatever it lets pass, OpenVDB
-/// reads within bounds.
+/// OpenVDB 10 trusts a file: it uses lengths of texts and of packed chunks unchecked for
+/// allocations and reads, and a wrong one makes it write past the end of a leaf. This walk reads
+/// the same bytes in the same order without building anything: a file that passes it is read by
+/// OpenVDB within bounds.
 ///
-/// Walked are files of format 222 (OpenVDB 2, 2013) or later, and trees of the standard kind (5, 4,
-/// 3) of numbers, vectors, bool and mask.
+/// Supported are files of format 222 (OpenVDB 2, 2013) or later, with standard trees (5, 4, 3) of
+/// numbers, vectors, bool and mask.
 class VdbWalk {
  public:
   /// `stream` must be seekable, have its exceptions on and stay until the walk ends.
@@ -23,15 +23,15 @@ class VdbWalk {
   VdbWalk(const VdbWalk&) = delete;
   VdbWalk& operator=(const VdbWalk&) = delete;
 
-  /// From the start of the file: the header, and every grid's name, metadata and transform; of
-  /// files that are read in order only, their trees too. Leaves the stream at its start.
-  /// @throws std::runtime_error with what makes no sense, std::ios_base::failure where the file
+  /// From the start of the file: checks the header, and every grid's name, metadata and transform;
+  /// if the file can only be read in order, the trees too. Leaves the stream at its start.
+  /// @throws std::runtime_error saying what is inconsistent, std::ios_base::failure where the file
   /// ends early.
   void checkHeads();
 
-  /// The tree of the grid whose head begins at byte `grid_position`, and is of `grid_type`
-  /// ("Tree_float_5_4_3"); without its voxels only the tree's shape. Leaves the stream where it
-  /// was. @throws as checkHeads().
+  /// Checks the tree of the grid whose header begins at byte `grid_position`, and which has the
+  /// type `grid_type` ("Tree_float_5_4_3"); without voxels only the tree's topology. Leaves the
+  /// stream where it was. @throws as checkHeads().
   void checkTree(std::int64_t grid_position, const std::string& grid_type, bool is_half,
                  bool with_voxels);
 

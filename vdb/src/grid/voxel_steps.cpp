@@ -18,11 +18,11 @@ using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
 using Accessor = openvdb::tree::ValueAccessor<const Tree, /*IsSafe=*/false>;
 
-constexpr int kSide = 10;  ///< a leaf and one voxel more on every side
-/// [voxels] What foreign tools end their band short of its width.
+constexpr int kSide = 10;  ///< a leaf and one more voxel on every side
+/// [voxels] By how much the band of a grid from another tool may be narrower than it states.
 constexpr double kRim = 0.25;
 
-/// The voxels around a leaf; what is not active is NaN.
+/// The voxels around a leaf; inactive ones are NaN.
 struct Block {
   std::array<float, static_cast<std::size_t>(kSide) * kSide * kSide> values;
 

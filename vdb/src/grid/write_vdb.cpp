@@ -22,7 +22,7 @@ Error writeError(const std::string& path, const std::string& what) {
   return Error(ErrorKind::kOperation, {"vdb.write", what, "", path});
 }
 
-/// A new file beside the one that is wanted, gone again unless it was put in place.
+/// A new file beside the target; the destructor removes it unless it was put in place.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& path) : target_(path) {
@@ -51,7 +51,7 @@ class TemporaryFile {
 
   void putInPlace(bool overwrite) {
     synchronize(path_);
-    // link() refuses where rename() would replace.
+    // link() fails where rename() would replace a file.
     const int failed =
         overwrite ? rename(path_.c_str(), target_.c_str()) : link(path_.c_str(), target_.c_str());
     if (failed != 0)

@@ -110,7 +110,7 @@ void ByteStream::startNextMember() {
     ++zlib_.next_in;
     --zlib_.avail_in;
   }
-  if (*zlib_.next_in != 0x1f) {  // what follows is not a gzip member; gzip -t ignores it too
+  if (*zlib_.next_in != 0x1f) {  // the rest is not a gzip member; gzip -t ignores it too
     ended_ = true;
     return;
   }
@@ -147,7 +147,7 @@ std::uint64_t ByteStream::verifyEnd(std::uint64_t most) {
   std::vector<unsigned char> rest(kBufferSize);
   std::uint64_t passed = 0;
   for (std::size_t got = 0; (got = read(rest)) > 0;) {
-    pollStop();  // what packs well comes without a refill
+    pollStop();  // highly compressed data yield much output without a refill
     passed += got;
     if (passed > most) return passed;
   }

@@ -21,7 +21,8 @@ DicomKind kindOf(const DicomElements& file) {
   return isDicomStructureSet(file) ? DicomKind::kStructureSet : DicomKind::kSlices;
 }
 
-/// The kind of `path`, and its file: that itself, or the only one of a folder without slices.
+/// The kind of `path`, and the file to read: `path` itself, or the only file of a folder without
+/// slices.
 std::pair<DicomKind, std::string> chosenFile(const std::string& path, const ImageOptions& options) {
   std::error_code failure;
   if (std::filesystem::is_regular_file(path, failure)) {

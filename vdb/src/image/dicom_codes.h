@@ -13,7 +13,7 @@ namespace palpate::vdb {
 /// The first code of a sequence of them; nothing if there is none.
 [[nodiscard]] std::optional<LabelCode> codeIn(const DicomItem& holder, std::uint32_t sequence);
 
-/// Of CIE L*, a*, b* in 16 bits each, white D65, to sRGB; colors that no screen shows are clamped.
+/// Converts CIE L*, a*, b* in 16 bits each (white D65) to sRGB; colors outside sRGB are clamped.
 [[nodiscard]] LabelColor colorOfLab(const std::vector<int>& lab);
 
 }  // namespace palpate::vdb

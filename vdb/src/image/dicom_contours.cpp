@@ -40,9 +40,9 @@ constexpr std::uint32_t kRoiCode = 0x30060086;
 
 /// [share of a step] A contour that is farther from its slice was drawn on another one.
 constexpr double kOnSlice = 0.1;
-/// [mm] The widest pixels of a grid that no series gives.
+/// [mm] Largest pixel width of a grid that is made here because no series gives one.
 constexpr double kOwnPixel = 1.0;
-/// Of such a grid: a coordinate that was damaged makes more.
+/// Most voxels of such a grid: more come only from a damaged coordinate.
 constexpr double kMostVoxels = 1e9;
 
 using Contour = std::vector<Vec3>;  ///< [mm], LPS
@@ -57,7 +57,7 @@ struct StructureSet {
   std::vector<Roi> rois;
   LabelTable table;
   LabelCodes codes;
-  std::string series;  ///< UID; empty if none is referred to
+  std::string series;  ///< UID; empty if the file refers to none
   std::vector<std::string> notes;
 };
 
@@ -65,7 +65,7 @@ Error fail(const DicomItem& of, const char* code, std::string message, std::stri
   return inputError(code, std::move(message), std::move(hint), of.path);
 }
 
-/// A whole number, which DICOM writes as text.
+/// An integer, which DICOM writes as text.
 int wholeAt(const DicomItem& item, std::uint32_t tag, const char* name) {
   if (item.text(tag).empty()) {
     throw fail(item, "dicom.contours", std::string("a structure has no ") + name);
@@ -97,7 +97,7 @@ Contour contourOf(const DicomItem& item, const std::string& roi) {
   return contour;
 }
 
-/// Closed contours of a structure; how many others it has.
+/// Reads the closed contours of a structure; returns how many others it has.
 std::size_t readContours(const DicomItem& of, Roi& roi) {
   std::size_t others = 0;
   for (const DicomItem& item : of.items(kContours)) {
@@ -177,7 +177,7 @@ struct ContourGrid {
   Place place;  ///< [m], RAS
 };
 
-/// Of the series beside the file; nothing if it is not there.
+/// The grid of the series in the same folder; nothing if the series is not there.
 std::optional<ContourGrid> gridOfSeries(StructureSet& set) {
   if (set.series.empty()) return {};
   std::filesystem::path folder = std::filesystem::path(set.path).parent_path();
@@ -187,14 +187,15 @@ std::optional<ContourGrid> gridOfSeries(StructureSet& set) {
     set.notes.insert(set.notes.end(), series.notes.begin(), series.notes.end());
     return ContourGrid{series.size, series.place};
   } catch (const Error& error) {
-    // The series may lie elsewhere; damage to it is reported.
+    // The series may lie elsewhere, which is not an error here; damage to it is reported.
     const std::string& code = error.problem().code;
     if (code != "dicom.series" && code != "dicom.missing") throw;
     return {};
   }
 }
 
-/// Around all contours, pixels as wide as the planes are apart, and no wider than kOwnPixel.
+/// A grid around all contours, with pixels as wide as the step between planes, but at most
+/// kOwnPixel.
 ContourGrid ownGrid(StructureSet& set) {
   PlaneSet planes;
   Box3 box;
@@ -215,7 +216,7 @@ ContourGrid ownGrid(StructureSet& set) {
   if (planes.positions.empty()) {
     throw inputError("dicom.contours", "no structure has a closed contour", {}, set.path);
   }
-  // The first and the last plane of a structure are inside the grid.
+  // One empty plane before the first and behind the last plane of a structure.
   constexpr int kMargin = 1;
   PlaneGrid along = planeGrid(planes, kMargin, set.path, set.notes);
   const double pixel = std::min(kOwnPixel, glm::length(along.step));

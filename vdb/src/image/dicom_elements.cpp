@@ -24,8 +24,8 @@ constexpr std::size_t kPreamble = 128;
 constexpr std::size_t kLongestText = 4096;
 constexpr int kDeepest = 32;
 
-/// Where values have no representation, nothing else tells these from bytes: of segmentations, then
-/// of structure sets.
+/// Tags of sequences. Where values carry no type (VR), nothing else tells sequences from bytes.
+/// First those of segmentations, then those of structure sets.
 constexpr std::array<std::uint32_t, 16> kSequences = {
     0x00620002, 0x0062000A, 0x0062000F, 0x00209113, 0x00209116, 0x00289110, 0x52009229, 0x52009230,
     0x30060010, 0x30060012, 0x30060014, 0x30060020, 0x30060039, 0x30060040, 0x30060080, 0x30060086};
@@ -102,7 +102,8 @@ class Walker {
     if (explicit_) {
       if (at_ + 4 > bytes_.size()) failShort();
       vr = std::string_view(bytes_).substr(at_, 2);
-      // All of PS3.5, table 6.2-1. With any other nothing says how its length is written.
+      // All types (VR) of PS3.5, table 6.2-1. For any other type the format of its length is
+      // unknown.
       constexpr std::array<std::string_view, 21> kShort = {
           "AE", "AS", "AT", "CS", "DA", "DS", "DT", "FL", "FD", "IS", "LO",
           "LT", "PN", "SH", "SL", "SS", "ST", "TM", "UI", "UL", "US"};
@@ -128,7 +129,7 @@ class Walker {
       return pixels(length);
     }
     if (length == kUndefined) {
-      // An unknown sequence within an explicit file is implicit.
+      // A sequence of unknown type (UN) within an explicit file has implicit elements.
       const bool was_explicit = explicit_;
       if (vr == "UN") explicit_ = false;
       items(bytes_.size(), true, depth, tag);
@@ -155,7 +156,7 @@ class Walker {
     into_->texts[tag] = std::move(value);
   }
 
-  /// The items of the sequence `of` up to `end`, or to where it says that it ends.
+  /// Reads the items of the sequence `of` up to `end`, or up to its end mark.
   void items(std::size_t end, bool until_mark, int depth, std::uint32_t of) {
     DicomItem& holder = *into_;
     while (until_mark || at_ < end) {
@@ -206,8 +207,8 @@ class Walker {
 
   const std::string& bytes_;
   DicomElements& out_;
-  DicomItem* into_;  ///< what the present element belongs to
-  bool is_deep_;     ///< sequences are kept as well
+  DicomItem* into_;  ///< the item that the present element belongs to
+  bool is_deep_;     ///< keep sequences as well
   std::size_t at_ = 0;
   std::uint64_t elements_ = 0;
   bool explicit_ = true;

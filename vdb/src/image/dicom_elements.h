@@ -1,5 +1,5 @@
 #pragma once
-/// The elements of a DICOM file, found by walking it from end to end.
+/// The elements of a DICOM file, found by one walk through the file.
 
 #include <cstdint>
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace palpate::vdb {
 
-/// Where the pixels lie in a file.
+/// Position of a piece of pixel data in a file.
 struct PixelPart {
   std::uint64_t begin = 0;  ///< [bytes]
   std::uint64_t size = 0;
@@ -17,39 +17,39 @@ struct PixelPart {
 
 /// A data set: the whole of a file, or an item of a sequence.
 struct DicomItem {
-  std::string path;  ///< of its file
+  std::string path;  ///< the file that it comes from
   bool big_endian = false;
   std::map<std::uint32_t, std::string> texts;  ///< values, without padding
   std::map<std::uint32_t, std::vector<DicomItem>> sequences;
 
   [[nodiscard]] bool has(std::uint32_t tag) const { return texts.contains(tag); }
-  /// The text, without the blanks around it; empty if there is none.
+  /// The text, without blanks at its ends; empty if there is none.
   [[nodiscard]] std::string text(std::uint32_t tag) const;
-  /// The numbers of a text such as "1\-2.5"; `count` 0: however many there are. @throws Error
-  /// (kInput, dicom.value)
+  /// The numbers of a text such as "1\-2.5". There must be `count` of them; 0: any number. @throws
+  /// Error (kInput, dicom.value)
   [[nodiscard]] std::vector<double> numbers(std::uint32_t tag, std::size_t count) const;
   /// An unsigned short. @throws Error (kInput, dicom.value)
   [[nodiscard]] std::optional<int> shortAt(std::uint32_t tag) const;
-  /// So many unsigned shorts; empty if the element is not there. @throws Error (kInput,
+  /// `count` unsigned shorts; empty if the element is not there. @throws Error (kInput,
   /// dicom.value)
   [[nodiscard]] std::vector<int> shorts(std::uint32_t tag, std::size_t count) const;
   /// The items of a sequence; empty if it is not there.
   [[nodiscard]] const std::vector<DicomItem>& items(std::uint32_t tag) const;
-  /// The first of them; null if there is none.
+  /// The first item of a sequence; null if there is none.
   [[nodiscard]] const DicomItem* first(std::uint32_t tag) const;
 };
 
-/// GDCM takes what is missing of a file for zeros, or ends the process on an assertion. So every
-/// file is walked by this code: every length must fit, every sequence end. GDCM sees none of these
-/// bytes but those of packed pixels. The outermost level has short values only, and no sequences,
-/// unless they are asked for.
+/// GDCM reads missing parts of a file as zeros, or ends the process on an assertion. Therefore this
+/// code walks every file: every length must fit, every sequence must end. GDCM then sees only the
+/// bytes of packed pixels. The outermost level has short values only, and no sequences, unless the
+/// caller asks for them.
 struct DicomElements : DicomItem {
   std::string transfer_syntax;
   bool has_pixels = false;
   bool packed = false;            ///< pixel data in fragments
   bool pixels_are_words = false;  ///< written as words of 16 bits (OW)
-  std::uint64_t pixel_bytes = 0;  ///< of pixel data that are not packed
-  std::vector<PixelPart> pixels;  ///< one part, or the fragments with their table of offsets first
+  std::uint64_t pixel_bytes = 0;  ///< size of pixel data that are not packed
+  std::vector<PixelPart> pixels;  ///< one part, or the fragments after their table of offsets
 };
 
 enum class DicomDepth { kOutermost, kSequencesToo };

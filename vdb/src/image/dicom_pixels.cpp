@@ -14,7 +14,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// Bits above the stored ones may hold overlays, and of negative numbers anything.
+/// Bits above the stored ones may hold overlays, and for negative numbers they may hold anything.
 std::int32_t storedBits(std::uint32_t value, int bits, bool is_signed) noexcept {
   const std::uint32_t mask = (std::uint32_t{1} << static_cast<unsigned>(bits)) - 1;
   const std::uint32_t sign = std::uint32_t{1} << static_cast<unsigned>(bits - 1);
@@ -34,19 +34,19 @@ std::string bytesOf(std::ifstream& file, const PixelPart& part, const std::strin
   return bytes;
 }
 
-/// Low byte first, as GDCM hands pixels out, whatever the file's order is.
+/// Low byte first, as GDCM returns pixels, whatever the file's byte order is.
 std::string plainPixels(const DicomElements& slice, int allocated) {
   std::ifstream file(slice.path, std::ios::binary);
   std::string bytes = bytesOf(file, slice.pixels.front(), slice.path);
-  // Of words in big endian order the bytes come in pairs, also where a pixel is one byte.
+  // In words of big-endian order the bytes are swapped in pairs, even if a pixel is one byte.
   if (slice.big_endian && (allocated == 16 || slice.pixels_are_words)) {
     for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) std::swap(bytes[i], bytes[i + 1]);
   }
   return bytes;
 }
 
-/// Nothing that is of use packs better; what claims to is damaged, and would be given memory for
-/// it.
+/// Refuses pixels packed more tightly than any useful image: such a file is damaged, and would only
+/// get memory allocated for it.
 void requireLikely(const DicomElements& slice, std::uint64_t bytes) {
   constexpr std::uint64_t kBestRatio = 4096;
   constexpr std::uint64_t kAlwaysLikely = std::uint64_t{1} << 24U;
@@ -102,7 +102,7 @@ std::vector<std::vector<std::int32_t>> readDicomPixels(const std::vector<DicomEl
     }
     return out;
   }
-  // One child for them all; which slice it was at when it ended, nobody knows.
+  // One child for all slices; if it dies, nobody knows at which slice.
   ChildTask task{0, "dicom.pixels", "GDCM",
                  "the file may be damaged; save the series uncompressed (gdcmconv --raw)",
                  slices.front().path};

@@ -8,11 +8,12 @@
 
 namespace palpate::vdb {
 
-/// Pixel values of each slice as stored, without slope and intercept, in order. Rows, columns and
-/// bits of the elements must have been checked, and be the same for all. Plain pixels are read by
-/// our own code; packed ones are unpacked by GDCM, in a child process if libraryLimits() say so.
-/// @throws Error (kInput, dicom.pixels): not unpacked, or not those that the elements describe;
-/// dicom.truncated.
+/// Stored pixel values of each slice, without slope and intercept, in order. The caller must have
+/// checked rows, columns and bits of the elements, and that they are the same for all slices. Plain
+/// pixels are read by our own code; packed ones are unpacked by GDCM, in a child process if
+/// libraryLimits() say so.
+/// @throws Error (kInput, dicom.pixels) if pixels cannot be unpacked, or are not those that the
+/// elements describe; dicom.truncated.
 [[nodiscard]] std::vector<std::vector<std::int32_t>> readDicomPixels(
     const std::vector<DicomElements>& slices);
 

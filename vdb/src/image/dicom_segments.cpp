@@ -44,7 +44,7 @@ Error fail(const DicomItem& of, const char* code, std::string message, std::stri
   return inputError(code, std::move(message), std::move(hint), of.path);
 }
 
-/// A file whose header fits together.
+/// A file whose header is consistent.
 struct SegmentFile {
   DicomElements elements;
   SegmentKind kind = SegmentKind::kBinary;
@@ -55,7 +55,7 @@ struct SegmentFile {
   PlaneSet planes;
   PlaneGrid grid;
   Place place;
-  std::vector<int> segment_of;  ///< of each frame; none in label maps
+  std::vector<int> segment_of;  ///< for each frame; empty in label maps
   std::vector<std::string> notes;
 
   [[nodiscard]] std::size_t frames() const { return planes.positions.size(); }
@@ -105,7 +105,7 @@ void readTable(SegmentFile& out) {
   for (const DicomItem& segment : out.elements.items(kSegments)) {
     const auto number = segment.shortAt(kNumber);
     if (!number) throw fail(segment, "dicom.segments", "a segment has no number");
-    // Label maps may describe their background.
+    // Label maps may describe their background, which is not a segment.
     if (*number == 0) continue;
     const auto code = codeIn(segment, kPropertyType);
     std::string name = segment.text(kName);
@@ -126,7 +126,8 @@ void readTable(SegmentFile& out) {
   }
 }
 
-/// The group of frame `n` itself, else that of all frames; null if neither has one.
+/// The functional group of frame `n` itself, or else the shared one of all frames; null if neither
+/// has one.
 const DicomItem* groupOf(const SegmentFile& file, std::size_t n, std::uint32_t tag) {
   const std::vector<DicomItem>& frames = file.elements.items(kPerFrame);
   if (n < frames.size()) {
@@ -196,7 +197,7 @@ void readPlanes(SegmentFile& out) {
   }
 }
 
-/// Which segment each frame is of; twice the same place is an error.
+/// Finds the segment of each frame; the same segment twice at one place is an error.
 void readSegmentsOfFrames(SegmentFile& out) {
   std::map<std::pair<int, int>, std::size_t> known;
   for (std::size_t n = 0; n < out.frames(); ++n) {
@@ -240,7 +241,7 @@ SegmentFile readHeader(const std::string& path) {
   const auto bits = static_cast<std::uint64_t>(out.pixelsOfFrame()) * out.frames() *
                     static_cast<std::uint64_t>(allocated);
   const std::uint64_t wanted = (bits + 7) / 8;
-  // One byte may fill up to an even length.
+  // One byte of padding may fill up to an even length.
   const bool fits = out.elements.packed ||
                     (out.elements.pixel_bytes >= wanted && out.elements.pixel_bytes <= wanted + 1);
   if (!fits) {
@@ -252,7 +253,7 @@ SegmentFile readHeader(const std::string& path) {
   return out;
 }
 
-/// The values of one frame after the other.
+/// Reads the values of frames, one frame after another.
 class FrameReader {
  public:
   explicit FrameReader(const SegmentFile& file) : file_(file) {
@@ -260,7 +261,7 @@ class FrameReader {
       stream_.open(file.elements.path, std::ios::binary);
       return;
     }
-    // One fragment for each frame, behind their table of offsets.
+    // The table of offsets, then one fragment for each frame.
     if (file.elements.pixels.size() != file.frames() + 1) {
       throw fail(file.elements, "dicom.pixels",
                  std::to_string(file.frames()) + " frames lie in " +
@@ -285,13 +286,13 @@ class FrameReader {
     unpacked_ = readDicomPixels(frames);
   }
 
-  /// 0 or 1 of binary segments, else what is stored.
+  /// The values of frame `n`: 0 or 1 for binary segments, otherwise the stored values.
   const std::vector<std::int32_t>& frame(std::size_t n) {
     if (file_.elements.packed) return unpacked_[n];
     const auto bits =
         static_cast<std::uint64_t>(file_.elements.shortAt(kBitsAllocated).value_or(1));
     const std::uint64_t count = file_.pixelsOfFrame();
-    // Frames of binary segments follow bit on bit, and need not begin with a byte.
+    // Frames of binary segments are packed bit by bit, and need not begin at a byte.
     const std::uint64_t first_bit = count * n * bits;
     const std::uint64_t first = first_bit / 8;
     const std::uint64_t end = (first_bit + count * bits + 7) / 8;
@@ -329,7 +330,7 @@ class FrameReader {
   std::vector<std::vector<std::int32_t>> unpacked_;
 };
 
-/// Voxels of each segment, in the order of their places.
+/// The voxels of each segment, sorted by place.
 std::vector<Structure> readStructures(const SegmentFile& file) {
   std::map<int, Structure> by_number;
   for (const auto& [number, name] : file.table.names) by_number[number] = {name, number, {}, 0};

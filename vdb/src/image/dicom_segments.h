@@ -9,12 +9,12 @@
 
 namespace palpate::vdb {
 
-/// True for the storage classes of segmentations of voxels.
+/// True for the storage classes of voxel segmentations.
 [[nodiscard]] bool isDicomSegmentation(const DicomElements& file);
 
-/// Segments by their numbers. A voxel is of a fractional segment from half of the largest value on.
-/// Planes without a frame are empty, and so is one more at each end. Overlaps go as
-/// mergeStructures() says.
+/// Segments keep their numbers. A voxel belongs to a fractional segment if its value is at least
+/// half of the largest possible one. Planes without a frame are empty; one more empty plane is
+/// added at each end. Overlaps are resolved by mergeStructures().
 /// @throws Error (kInput, codes "dicom.*").
 [[nodiscard]] Image readDicomSegmentation(const std::string& path, const ImageOptions& options);
 [[nodiscard]] ImageInfo readDicomSegmentationInfo(const std::string& path);

@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace dicom;
 
-/// Directions and spacings of slices of one volume, and steps between them, are written with five
-/// digits or so.
+/// Tolerance for directions and spacings of slices of one volume, and steps between them: files
+/// write them with about five digits.
 constexpr double kSameDirection = 1e-4;
 constexpr double kEvenSteps = 0.05;   ///< [share of a step]
 constexpr double kShearToTell = 0.1;  ///< [degrees]
@@ -69,7 +69,7 @@ void checkPixels(const DicomElements& e) {
   const auto wanted = static_cast<std::uint64_t>(e.shortAt(kRows).value_or(0)) *
                       static_cast<std::uint64_t>(e.shortAt(kColumns).value_or(0)) *
                       static_cast<std::uint64_t>(allocated / 8);
-  // One byte may fill up to an even length.
+  // One byte of padding may fill up to an even length.
   if (!e.packed && (e.pixel_bytes < wanted || e.pixel_bytes > wanted + 1)) {
     throw fail(e.pixel_bytes < wanted ? "dicom.truncated" : "dicom.pixels",
                "the file holds " + std::to_string(e.pixel_bytes) +
@@ -116,7 +116,7 @@ Slice sliceOf(DicomElements elements) {
   return s;
 }
 
-/// Throws if `s` does not belong with `first`.
+/// Throws if `s` does not belong to the same volume as `first`.
 void requireSame(const Slice& first, const Slice& s) {
   const auto differs = [&](const std::string& what) {
     return inputError("dicom.mixed",
@@ -137,7 +137,7 @@ void requireSame(const Slice& first, const Slice& s) {
   }
 }
 
-/// The step from slice to slice [mm]; throws if they are not evenly spaced on a line.
+/// [mm] The step from slice to slice; throws if slices are not evenly spaced on a line.
 Vec3 stepOf(const std::vector<Slice>& slices, const std::string& path) {
   std::vector<double> gaps;
   for (std::size_t i = 1; i < slices.size(); ++i) {
@@ -177,7 +177,7 @@ Vec3 stepOf(const std::vector<Slice>& slices, const std::string& path) {
   return step;
 }
 
-/// Adds notes on what a user should know of a series that was read.
+/// Adds notes for the user about a series that was read.
 void tell(const std::vector<Slice>& slices, const Vec3& step, std::vector<std::string>& notes) {
   const Slice& first = slices.front();
   const Vec3 normal = glm::cross(first.along_row, first.along_column);
@@ -205,8 +205,8 @@ void tell(const std::vector<Slice>& slices, const Vec3& step, std::vector<std::s
   if (e.text(kLossy) == "01") notes.emplace_back("the pixels went through lossy compression");
 }
 
-/// Whether a file is of a kind that has no pixels: a folder's index, presentations, raw data,
-/// reports, plans. A slice without pixels was cut short.
+/// Whether a file is of a kind that has no pixels: a folder's index, presentation states, raw data,
+/// reports, plans. If any other file lacks pixels, it was cut short.
 bool needsNoPixels(const DicomElements& e) {
   const std::string kind = e.text(kStorageClass);
   const std::string images = "1.2.840.10008.5.1.4.1.1.";
@@ -221,7 +221,7 @@ struct LeftOut {
   std::size_t segmentations = 0;
 };
 
-/// The series of the folder by UID, and what is not of one.
+/// The series of the folder by UID, and the files that belong to none.
 std::map<std::string, std::vector<DicomElements>> seriesIn(const fs::path& folder,
                                                            LeftOut& left_out) {
   std::map<std::string, std::vector<DicomElements>> out;
@@ -280,7 +280,7 @@ std::vector<DicomElements> chosenSeries(const std::string& path, const std::stri
 
 bool isDicomFile(const std::string& path) {
   std::error_code failure;
-  if (!fs::is_regular_file(path, failure)) return false;  // a pipe would keep its reader waiting
+  if (!fs::is_regular_file(path, failure)) return false;  // a reader of a pipe would wait for ever
   std::ifstream file(path, std::ios::binary);
   char head[132] = {};
   file.read(head, sizeof head);
@@ -304,7 +304,7 @@ DicomSeries findDicomSeries(const std::string& path, const std::string& wanted) 
   for (DicomElements& elements : chosenSeries(path, wanted, left_out)) {
     slices.push_back(sliceOf(std::move(elements)));
   }
-  // By name first: the errors do not depend on the folder's order.
+  // First sort by name, so that errors do not depend on the folder's order.
   std::sort(slices.begin(), slices.end(),
             [](const Slice& a, const Slice& b) { return a.elements.path < b.elements.path; });
   for (const Slice& s : slices) requireSame(slices.front(), s);

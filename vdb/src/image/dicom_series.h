@@ -1,5 +1,5 @@
 #pragma once
-/// Which files of a folder make one volume, and where it lies.
+/// Finds the files of a folder that make one volume, and the volume's place.
 
 #include <array>
 #include <string>
@@ -17,8 +17,8 @@ struct DicomSeries {
   std::vector<std::string> notes;
 };
 
-/// The series of `path`: of a folder its only one, or the one with UID `wanted`; of a file that of
-/// the file.
+/// The series of `path`: for a folder its only series, or the one with UID `wanted`; for a file the
+/// series that it belongs to.
 /// @throws Error (kInput, codes "dicom.*").
 [[nodiscard]] DicomSeries findDicomSeries(const std::string& path, const std::string& wanted);
 

@@ -11,8 +11,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// What GDCM unpacks, and is known to do well: RLE, and JPEG in its lossless, lossy, JPEG-LS and
-/// 2000 kinds.
+/// Whether GDCM is known to unpack this kind well: RLE, and JPEG (lossless, lossy, JPEG-LS and
+/// 2000).
 bool isKnownPacking(const std::string& syntax) {
   constexpr std::string_view kRle = "1.2.840.10008.1.2.5";
   constexpr std::string_view kJpeg = "1.2.840.10008.1.2.4.";
@@ -23,7 +23,7 @@ bool isKnownPacking(const std::string& syntax) {
          kind == "81" || kind == "90" || kind == "91";
 }
 
-/// A file of explicit, little endian elements.
+/// Writes a file of explicit, little-endian elements.
 class Writer {
  public:
   void number(std::uint32_t value, int bytes) {
@@ -89,7 +89,7 @@ std::string fileOf(const DicomElements& slice, const std::vector<std::string>& f
   bool is_table = true;
   for (const std::string& fragment : fragments) {
     out.tag(0xFFFEE000);
-    // One frame needs no table of where frames begin, and a damaged one leads astray.
+    // A single frame needs no table of offsets, and a damaged table would mislead GDCM.
     const std::string_view bytes = std::exchange(is_table, false) ? std::string_view() : fragment;
     out.number(static_cast<std::uint32_t>(bytes.size() + bytes.size() % 2), 4);
     out.raw(bytes);
@@ -111,7 +111,7 @@ std::string unpackDicom(const DicomElements& slice, const std::vector<std::strin
     throw fail("their transfer syntax is '" + slice.transfer_syntax.substr(0, 64) + "'");
   }
   if (fragments.size() < 2) throw fail("there are none");
-  gdcm::Trace::WarningOff();  // it talks on stderr
+  gdcm::Trace::WarningOff();  // it would write to stderr
   gdcm::Trace::ErrorOff();
   gdcm::Trace::DebugOff();
   std::istringstream stream(fileOf(slice, fragments));

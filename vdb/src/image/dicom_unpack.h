@@ -1,5 +1,5 @@
 #pragma once
-/// Packed pixels of DICOM, unpacked by GDCM. The one place that sees GDCM.
+/// Unpacks packed DICOM pixels with GDCM. The only file that includes GDCM.
 
 #include <string>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace palpate::vdb {
 
-/// The pixels that `fragments` (a table of offsets first, as in the file) pack, low byte first.
-/// GDCM gets a file that is made here out of numbers that were checked; of the stranger's it sees
-/// the fragments only.
+/// The pixels packed in `fragments` (a table of offsets first, as in the file), low byte first.
+/// GDCM gets a file written here from checked numbers; of the original file it sees only the
+/// fragments.
 /// @throws Error (kInput, dicom.pixels).
 [[nodiscard]] std::string unpackDicom(const DicomElements& slice,
                                       const std::vector<std::string>& fragments);

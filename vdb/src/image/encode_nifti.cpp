@@ -17,11 +17,11 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the header is written as it stands");
 
 constexpr double kMillimeters = 1e3;
-constexpr std::size_t kVoxelsAt = 352;  ///< the header, and four bytes that say: no extension
+constexpr std::size_t kVoxelsAt = 352;  ///< after the header, and four bytes that say: no extension
 
 std::string gzipped(const std::string& bytes) {
   z_stream stream{};
-  constexpr int kGzip = 16;  // added to the window's size it asks for gzip's frame
+  constexpr int kGzip = 16;  // zlib: added to the window size, it selects the gzip format
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS + kGzip, 8,
                    Z_DEFAULT_STRATEGY) != Z_OK) {
     throw Error(ErrorKind::kOperation, {"nifti.gzip", "zlib has no memory"});
@@ -47,7 +47,7 @@ std::string gzipped(const std::string& bytes) {
   return out;
 }
 
-/// All but what its numbers are.
+/// The whole header except the data type and its size.
 nifti_1_header headerOf(const Image& image) {
   nifti_1_header header{};
   header.sizeof_hdr = sizeof header;

@@ -1,5 +1,5 @@
 #pragma once
-/// What headers made of text lines share.
+/// Parsing shared by headers that consist of text lines.
 
 #include <charconv>
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace palpate::vdb {
 
-/// Between runs of blanks.
+/// The words between runs of blanks.
 [[nodiscard]] std::vector<std::string_view> wordsOf(std::string_view text);
 
-/// The whole text as a number; nothing if it is none. A leading + is allowed.
+/// The whole text as a number; nothing if it is not a number. A leading + is allowed.
 template <typename Number>
 [[nodiscard]] std::optional<Number> numberIn(std::string_view text) {
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
@@ -24,7 +24,7 @@ template <typename Number>
   return value;
 }
 
-/// All words as numbers; nothing if one is none.
+/// All words as numbers; nothing if one of them is not a number.
 template <typename Number>
 [[nodiscard]] std::optional<std::vector<Number>> numbersIn(std::string_view text) {
   std::vector<Number> numbers;

@@ -7,7 +7,8 @@
 namespace palpate::vdb {
 
 double Image::interpolate(const Vec3& world) const noexcept {
-  // A point computed to lie on the box of centers may miss it by round-off; it still counts as in.
+  // A point computed to lie on the border of the box may miss it by round-off; it still counts as
+  // inside.
   constexpr double kRoundOff = 1e-9;  // [voxels]
   const Vec3 index = toIndex(world);
   int cell[3];
@@ -31,7 +32,7 @@ double Image::interpolate(const Vec3& world) const noexcept {
       at_corner[a] = cell[a] + up;
       weight *= up != 0 ? fraction[a] : 1.0 - fraction[a];
     }
-    // A corner without weight is not read: it may be NaN, or beyond the edge.
+    // A corner with weight zero is not read: it may be NaN, or beyond the border.
     if (weight > 0.0) {
       sum += weight * static_cast<double>(at(at_corner[0], at_corner[1], at_corner[2]));
     }

@@ -28,7 +28,7 @@ bool hasOneOf(const std::string& path, std::initializer_list<const char*> extens
                      [&](const char* extension) { return hasExtension(path, extension); });
 }
 
-/// The file, and that which its header names.
+/// The file itself, and the one that its header names.
 std::set<std::string> withVoxels(const std::string& path, const ImageOptions& options) {
   if (hasOneOf(path, {".nrrd", ".nhdr"})) return {path, readNrrdHeader(path, options).data_path};
   if (hasOneOf(path, {".mha", ".mhd"})) {
@@ -54,7 +54,7 @@ std::vector<std::string> imageFiles(const std::string& path, const ImageOptions&
       const bool is_series = isDicomFolder(each);
       for (const std::string& file : filesIn(each)) {
         all.insert(file);
-        // Masks may have their voxels elsewhere.
+        // Masks may have their voxels in other files.
         if (!is_series && isImageFile(file)) all.merge(withVoxels(file, one));
       }
     } else {

@@ -1,5 +1,5 @@
 #pragma once
-/// What every reader of images says in the same way.
+/// Code shared by all readers of images.
 
 #include <string>
 #include <utility>
@@ -11,7 +11,7 @@
 
 namespace palpate::vdb {
 
-/// An image of `path`, without its voxels.
+/// An image for `path`, without its voxels.
 [[nodiscard]] inline Image emptyImage(const std::string& path, const std::array<int, 3>& size,
                                       const Place& place, std::vector<std::string> notes) {
   Image image;
@@ -35,7 +35,7 @@ namespace palpate::vdb {
   return info;
 }
 
-/// `format` begins the error's code.
+/// `format` is the prefix of the error's code.
 [[nodiscard]] inline Error notEnoughMemory(const std::string& format, const std::string& path) {
   return Error(
       ErrorKind::kOperation,

@@ -14,7 +14,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// One field of a CSV row, with or without quotes; takes it and its comma off the front of `row`.
+/// Removes one field of a CSV row, with or without quotes, and its comma from the front of `row`.
 std::string takeCsvField(std::string_view& row) {
   std::string field;
   std::string_view rest = trimmed(row);
@@ -48,7 +48,7 @@ std::vector<std::string> csvFields(std::string_view row) {
   return fields;
 }
 
-/// Columns between tabs if there is one, else between runs of blanks.
+/// Columns separated by tabs if there is one, otherwise by runs of blanks.
 std::vector<std::string_view> columnsOf(std::string_view line) {
   if (line.find('\t') == std::string_view::npos) return wordsOf(line);
   std::vector<std::string_view> columns;
@@ -106,7 +106,7 @@ class TableReader {
     return Error(ErrorKind::kInput, std::move(problem));
   }
 
-  /// By the first line that says something: ITK-SNAP has seven numbers, then a name in quotes.
+  /// Decides by the first meaningful line: ITK-SNAP has seven numbers, then a name in quotes.
   static Kind kindOf(std::string_view line) {
     const auto columns = wordsOf(line);
     if (columns.size() >= 8 && columns[7].starts_with('"')) return Kind::kSnap;
@@ -145,7 +145,7 @@ class TableReader {
     add(fields[0], fields.size() > 1 ? fields[1] : "", color);
   }
 
-  /// Where a header line says that the colors are.
+  /// Finds the columns of colors in a header line.
   void findColors(const std::vector<std::string>& fields) {
     for (const char* name : {"color_r", "color_g", "color_b"}) {
       for (std::size_t i = 2; i < fields.size(); ++i) {
@@ -157,7 +157,7 @@ class TableReader {
 
   void addColumns(std::string_view line) {
     const auto columns = columnsOf(line);
-    // A name with blanks in it would be cut off, or another format misread; both are refused.
+    // A name with blanks would be cut off, or another format misread; both are refused.
     for (std::size_t i = 2; i < columns.size(); ++i) {
       if (!numberIn<double>(columns[i])) {
         throw fail("labels.table_row",
@@ -208,7 +208,7 @@ class TableReader {
   LabelTable table_;
 };
 
-/// The table that an image has in its header.
+/// The table in the header of an image.
 LabelTable tableOfImage(const std::string& path) {
   LabelTable table = readImageInfo(path).labels;
   if (table.names.empty()) {
@@ -225,7 +225,7 @@ LabelTable readLabelTable(const std::string& path) {
     throw inputError("labels.table_missing", "this is a directory, not a table of names", {}, path);
   }
   if (std::filesystem::exists(path, failure) &&
-      !std::filesystem::is_regular_file(path, failure)) {  // a pipe may never end
+      !std::filesystem::is_regular_file(path, failure)) {  // reading a pipe may never end
     throw inputError("labels.table_missing", "this is not a file",
                      "write the table to a file first", path);
   }

@@ -18,14 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// [voxels] Headers of one grid, written by several programs in single precision or six digits,
-/// agree this well.
+/// [voxels] Tolerance between headers of one grid that several programs wrote in single precision
+/// or with six digits.
 constexpr double kSameGrid = 0.01;
 
 constexpr const char* kExtensions[] = {".nii.gz",   ".nii",  ".seg.nrrd", ".nrrd",
                                        ".seg.nhdr", ".nhdr", ".mha",      ".mhd"};
 
-/// "liver" of "masks/liver.nii.gz"; nothing if it is not a mask by its name.
+/// "liver" for "masks/liver.nii.gz"; nothing if the name is not that of a mask.
 std::string maskName(const std::string& path) {
   const std::string name = fileName(path);
   for (const char* const extension : kExtensions) {
@@ -35,7 +35,7 @@ std::string maskName(const std::string& path) {
   return {};
 }
 
-/// How each of the masks is read.
+/// The options for reading a single mask.
 ImageOptions ofOne(const ImageOptions& options) {
   ImageOptions one = options;
   one.with.clear();
@@ -57,14 +57,14 @@ std::string gridText(const Grid& grid) {
 }
 
 std::string vectorText(const Vec3& v, double unit) {
-  // Rounded first, so that no minus stands before a zero.
+  // Rounded first, so that no -0 is printed.
   const auto number = [&](double value) {
     return shortNumber(std::round(value * unit * 1e3) / 1e3 + 0.0, 4);
   };
   return "(" + number(v.x) + ", " + number(v.y) + ", " + number(v.z) + ")";
 }
 
-/// Throws if `other` does not lie on `grid`.
+/// Throws if `other` does not have the same voxels as `grid`.
 void requireSameGrid(const Grid& grid, const std::string& path, const Grid& other,
                      const std::string& other_path) {
   if (grid.size == other.size && disagreement(grid.place, other.place, grid.size) <= kSameGrid) {
@@ -113,7 +113,7 @@ LabelTable tableOf(const std::vector<std::string>& files) {
   return table;
 }
 
-/// Notes that many masks have stand once.
+/// Collects notes, so that one shared by many masks appears once.
 class MaskNotes {
  public:
   void add(const std::string& path, const std::vector<std::string>& notes) {
@@ -180,7 +180,7 @@ std::vector<std::string> maskFiles(const std::string& path, const std::vector<st
   std::error_code failure;
   for (const auto& entry : fs::directory_iterator(path, failure)) {
     const std::string file = entry.path().string();
-    // What begins with a dot was put there by a file manager.
+    // Files whose name begins with a dot come from a file manager.
     const bool is_hidden = fileName(file).starts_with('.');
     if (!is_hidden && entry.is_regular_file(failure) && !maskName(file).empty()) {
       files.push_back(file);

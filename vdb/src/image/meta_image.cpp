@@ -23,7 +23,7 @@ double bytesOfAll(const MetaImageHeader& header) {
          static_cast<double>(bytesOf(header.coding.type));
 }
 
-/// The voxels as a stream of what they unpack to. @throws Error if they cannot all be there.
+/// The voxels as a stream of unpacked bytes. @throws Error if they cannot all be there.
 std::unique_ptr<ByteStream> openData(const MetaImageHeader& header, const std::string& path) try {
   std::uint64_t begin = header.data_begin;
   const std::uint64_t size =
@@ -33,7 +33,7 @@ std::unique_ptr<ByteStream> openData(const MetaImageHeader& header, const std::s
     const double bytes = packed ? static_cast<double>(header.compressed_bytes) : bytesOfAll(header);
     begin = static_cast<double>(size) > bytes ? size - static_cast<std::uint64_t>(bytes) : 0;
   }
-  // MetaIO takes the size on trust, and what is missing for zeros.
+  // MetaIO trusts the size, and reads missing voxels as zeros.
   const std::uint64_t there = size - std::min(begin, size);
   if (packed && header.compressed_bytes > there) {
     throw fail(path, "metaimage.truncated",

@@ -21,7 +21,8 @@ constexpr std::size_t kLongestLine = std::size_t{1} << 20U;
 class Fields {
  public:
   explicit Fields(const std::string& path) : path_(path) {
-    const ByteStream whole(path, "metaimage", 0, Packing::kNone);  // refuses anything but a file
+    // Refuses anything but a regular file
+    const ByteStream whole(path, "metaimage", 0, Packing::kNone);
     std::ifstream file(path, std::ios::binary);
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {
@@ -37,7 +38,7 @@ class Fields {
         throw failAt(number, "metaimage.field", "'" + key + "' is given twice");
       }
       lines_[key] = number;
-      if (key == "ElementDataFile") {  // by the format's rule the last line
+      if (key == "ElementDataFile") {  // the last line, by the format's rule
         end_ = file.eof() ? whole.fileSize() : static_cast<std::uint64_t>(file.tellg());
         return;
       }
@@ -52,7 +53,7 @@ class Fields {
         "such files end in .mha or .mhd", path_);
   }
 
-  /// The first of these, which mean the same, that is there; empty: none.
+  /// The first of these synonymous keys that the header has; empty: none.
   [[nodiscard]] std::string key(std::initializer_list<const char*> names) const {
     for (const char* name : names) {
       if (values_.contains(name)) return name;
@@ -173,7 +174,7 @@ std::size_t readSize(const Fields& fields, const ImageOptions& options, MetaImag
   return count;
 }
 
-/// LPS, mm, by the format's convention.
+/// Sets the place; LPS and mm, by the format's convention.
 void placeInSpace(const Fields& fields, std::size_t dimensions, MetaImageHeader& out) {
   const std::string spacing_key = fields.key({"ElementSpacing", "ElementSize"});
   if (spacing_key.empty()) {
@@ -193,7 +194,7 @@ void placeInSpace(const Fields& fields, std::size_t dimensions, MetaImageHeader&
   if (matrix_key.empty()) {
     out.notes.emplace_back("the header has no TransformMatrix: axes are taken as L, P, S");
   } else {
-    // A row for each axis of the image: where it runs.
+    // A row for each axis of the image: its direction.
     const auto m = fields.numbers<double>(matrix_key, dimensions * dimensions, "metaimage.matrix");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t x = 0; x < 3; ++x) {
@@ -223,7 +224,7 @@ void placeInSpace(const Fields& fields, std::size_t dimensions, MetaImageHeader&
   }
   out.place = scaled(turned(lps), 1e-3);
   if (const std::string key = fields.key({"AnatomicalOrientation"}); !key.empty()) {
-    // Letters say where an axis comes from: RAI is L, P, S.
+    // Letters name the side that an axis comes from: RAI runs towards L, P, S.
     std::string to = fields.value(key);
     for (char& c : to) {
       constexpr std::string_view kFrom = "RLAPSI";

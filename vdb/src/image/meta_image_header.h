@@ -16,12 +16,12 @@ struct MetaImageHeader {
   std::array<int, 3> size{};
   int frames = 1;
   VoxelCoding coding;
-  bool text = false;  ///< numbers written out
+  bool text = false;  ///< numbers are written as text
   Packing packing = Packing::kNone;
-  std::uint64_t compressed_bytes = 0;  ///< as the header says; 0: it does not
-  std::string data_path;               ///< the header's own file, or the one it names
+  std::uint64_t compressed_bytes = 0;  ///< as the header says; 0: not stated
+  std::string data_path;               ///< the header's own file, or the one that it names
   std::uint64_t data_begin = 0;        ///< [bytes] in that file
-  bool at_end = false;                 ///< the voxels are the last of the file
+  bool at_end = false;                 ///< the voxels are the last bytes of the file
   Place place;                         ///< [m], RAS
   std::vector<std::string> notes;
 
@@ -31,7 +31,7 @@ struct MetaImageHeader {
   }
 };
 
-/// @throws Error (kInput, codes "metaimage.*") for what cannot be read or placed in space.
+/// @throws Error (kInput, codes "metaimage.*") if the file cannot be read or placed in space.
 [[nodiscard]] MetaImageHeader readMetaImageHeader(const std::string& path,
                                                   const ImageOptions& options);
 

@@ -9,13 +9,13 @@
 namespace palpate::vdb {
 namespace {
 
-/// More than any table of names takes; a longer gap before the voxels is passed over.
+/// Limit well above any table of names; a longer gap before the voxels is skipped.
 constexpr std::uint64_t kLongestExtensions = std::uint64_t{1} << 24U;
 
-/// Some writers fill up behind the voxels; more than this is not theirs.
+/// Some writers pad behind the voxels; more than this is not padding.
 constexpr std::uint64_t kMostPadding = std::uint64_t{1} << 20U;
 
-/// The names of labels between header and voxels; returns how many bytes were read for them.
+/// Reads label names stored between header and voxels; returns how many bytes were read.
 std::uint64_t readLabels(ByteStream& stream, const NiftiHeader& header, const std::string& path,
                          LabelTable& labels) {
   if (header.extension_bytes > kLongestExtensions) return 0;

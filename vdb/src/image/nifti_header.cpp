@@ -52,8 +52,8 @@ void checkMagic(const char* magic, char version, const std::string& path) {
   throw notNifti(path);
 }
 
-/// dim[] before libnifti sees it: libnifti prints its complaints to stderr, whatever its debug
-/// level.
+/// Checks dim[] before libnifti sees it: libnifti prints its complaints to stderr, whatever its
+/// debug level.
 template <typename Header>
 void checkDimensions(const Header& header, const std::string& path, std::optional<int> frame) {
   if (header.dim[0] < 1 || header.dim[0] > 7) {
@@ -131,7 +131,7 @@ Scalar voxelType(int datatype, const std::string& path) {
              "save the image with an integer or float type of 8 to 64 bits");
 }
 
-/// [m] in one unit of the header's spatial coordinates.
+/// [m] Size of one unit of the header's spatial coordinates.
 double metersPerSpaceUnit(int code, const std::string& path, std::vector<std::string>& notes) {
   switch (code) {
     case NIFTI_UNITS_METER:
@@ -172,7 +172,7 @@ void checkPlace(const Place& place, const char* name, const std::string& path) {
 
 void checkSpacings(const nifti_image& nim, const char* user, const std::string& path) {
   for (int i = 1; i <= 3; ++i) {
-    // libnifti puts 1 in the place of such spacings.
+    // libnifti replaces such spacings by 1.
     if (!(nim.pixdim[i] > 0.0) || !std::isfinite(nim.pixdim[i])) {
       throw fail(path, "nifti.spacing",
                  "the voxel spacing pixdim[" + std::to_string(i) + "] is " +
@@ -182,7 +182,7 @@ void checkSpacings(const nifti_image& nim, const char* user, const std::string& 
   }
 }
 
-/// [units of the file]
+/// [units of the file] The qform as a place.
 std::optional<Place> qform(const nifti_image& nim, const std::string& path) {
   if (nim.qform_code <= 0) return std::nullopt;
   checkSpacings(nim, "the qform", path);
@@ -262,7 +262,7 @@ NiftiHeader interpret(Header raw, int version, bool swapped, const std::string& 
   out.coding.type = voxelType(raw.datatype, path);
   out.coding.swapped = swapped;
   out.is_labels = raw.intent_code == NIFTI_INTENT_LABEL;
-  // The file's own spacings, before libnifti mends them.
+  // The file's own spacings, before libnifti changes them.
   const double pixdim[4] = {0.0, static_cast<double>(raw.pixdim[1]),
                             static_cast<double>(raw.pixdim[2]), static_cast<double>(raw.pixdim[3])};
   NiftiPtr nim;
@@ -306,7 +306,7 @@ NiftiHeader interpret(Header raw, int version, bool swapped, const std::string& 
 
 NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path,
                             const ImageOptions& options) {
-  nifti_set_debug_level(0);  // otherwise libnifti talks on stderr
+  nifti_set_debug_level(0);  // otherwise libnifti prints to stderr
   std::array<unsigned char, kNifti2Size> bytes{};
   std::size_t consumed = stream.read(std::span(bytes).first(kNifti1Size));
   std::int32_t header_size = 0;
@@ -342,7 +342,7 @@ NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path,
     std::memcpy(&raw, bytes.data(), sizeof raw);
     header = interpret(raw, 2, swapped, path, options);
   }
-  // As doubles: no product of three ints times eight bytes is trusted to fit before this.
+  // In doubles: the product of three ints and eight bytes may overflow integers here.
   stream.requireContent(static_cast<double>(header.data_offset) +
                         static_cast<double>(header.size[0]) * static_cast<double>(header.size[1]) *
                             static_cast<double>(header.size[2]) *

@@ -1,5 +1,5 @@
 #pragma once
-/// What of a NIfTI header matters here, checked.
+/// The checked parts of a NIfTI header that matter here.
 
 #include <array>
 #include <cstdint>
@@ -17,10 +17,10 @@ struct NiftiHeader {
   int version = 1;
   std::array<int, 3> size{};
   VoxelCoding coding;
-  std::uint64_t data_offset = 0;  ///< [bytes] of the first voxel, of the frame that was chosen
+  std::uint64_t data_offset = 0;  ///< [bytes] of the first voxel of the chosen frame
   std::uint64_t header_bytes = 0;
   std::uint64_t extension_bytes = 0;  ///< between the header and the first voxel of the file
-  std::uint64_t later_bytes = 0;      ///< of the frames behind the one that was chosen
+  std::uint64_t later_bytes = 0;      ///< [bytes] of the frames behind the chosen one
   Place place;                        ///< [m], RAS
   std::string length_unit;
   bool is_labels = false;  ///< intent code 1002
@@ -32,8 +32,8 @@ struct NiftiHeader {
   }
 };
 
-/// Reads the header at the front of `stream`, no more.
-/// @throws Error (kInput) for whatever cannot be placed in space or read as scalars; also if the
+/// Reads the header at the front of `stream`, and nothing behind it.
+/// @throws Error (kInput) if the image cannot be placed in space or read as scalars; also if the
 /// file is certainly too short for its voxels.
 [[nodiscard]] NiftiHeader readNiftiHeader(ByteStream& stream, const std::string& path,
                                           const ImageOptions& options);

@@ -14,7 +14,7 @@
 namespace palpate::vdb {
 namespace {
 
-constexpr std::size_t kExtensionHead = 8;  ///< [bytes] its size and its code
+constexpr std::size_t kExtensionHead = 8;  ///< [bytes] size and code of an extension
 constexpr std::string_view kCdata = "<![CDATA[";
 constexpr std::string_view kCdataEnd = "]]>";
 
@@ -112,8 +112,7 @@ LabelTable niftiLabels(std::span<const unsigned char> extensions, bool swapped,
   while (at + kExtensionHead <= extensions.size()) {
     const std::size_t size = wordAt(extensions, at, swapped);
     const std::uint32_t code = wordAt(extensions, at + 4, swapped);
-    // A size that leads nowhere ends the list, as in libnifti: padding before the voxels looks like
-    // that.
+    // An impossible size ends the list, as in libnifti: padding before the voxels looks like that.
     if (size < kExtensionHead || size > extensions.size() - at) break;
     if (code == kComment || code == kCaret) {
       const std::string_view text(

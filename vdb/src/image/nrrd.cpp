@@ -22,7 +22,7 @@ int entriesOf(const NrrdHeader& header) {
   return header.other ? static_cast<int>(header.sizes[*header.other]) : 1;
 }
 
-/// Numbers as text.
+/// Reads numbers written as text.
 std::vector<float> readText(const NrrdHeader& header, Oddities& odd) {
   std::ifstream file(header.data_path, std::ios::binary);
   file.seekg(static_cast<std::streamoff>(header.data_begin) +
@@ -51,8 +51,7 @@ std::vector<float> readText(const NrrdHeader& header, Oddities& odd) {
   return values;
 }
 
-/// Where the voxels begin, as a stream of what they unpack to. @throws Error if they cannot all be
-/// there.
+/// The voxels as a stream of unpacked bytes. @throws Error if they cannot all be there.
 std::unique_ptr<ByteStream> openData(const NrrdHeader& header, const std::string& path) try {
   const double bytes =
       static_cast<double>(header.count()) * static_cast<double>(bytesOf(header.coding.type));
@@ -89,9 +88,9 @@ std::vector<float> readAll(const NrrdHeader& header, const std::string& path, Od
   return values;
 }
 
-/// The `entry`th volume along the axis that is not in space.
+/// The volume number `entry` along the axis that is not spatial.
 std::vector<float> volume(const std::vector<float>& all, const NrrdHeader& header, int entry) {
-  std::size_t inner = 1;  // values that stand together for one entry
+  std::size_t inner = 1;  // values that belong to one entry and follow each other
   for (std::size_t axis = 0; axis < *header.other; ++axis) {
     inner *= static_cast<std::size_t>(header.sizes[axis]);
   }
@@ -106,7 +105,8 @@ std::vector<float> volume(const std::vector<float>& all, const NrrdHeader& heade
   return out;
 }
 
-/// The frame that is meant. @throws Error if none was chosen of several, or one that is not there.
+/// The chosen frame. @throws Error if there are several and none was chosen, or if the chosen one
+/// does not exist.
 int chosenFrame(const NrrdHeader& header, const std::string& path, const ImageOptions& options) {
   const int entries = entriesOf(header);
   const int frame = options.frame.value_or(0);
@@ -127,7 +127,7 @@ int chosenFrame(const NrrdHeader& header, const std::string& path, const ImageOp
   return frame;
 }
 
-/// Segments, if the file has some and no single frame is asked for.
+/// The file's segments, if it has some and no single frame was chosen.
 Segments segmentsOf(const NrrdHeader& header, const std::string& path,
                     const ImageOptions& options) {
   if (options.frame) return Segments({}, 1, path);

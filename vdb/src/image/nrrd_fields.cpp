@@ -22,7 +22,7 @@ constexpr std::string_view kFields[] = {
     "sizes",      "space",    "spacedimension", "spaceorigin", "spacedirections",
     "spaceunits", "spacings", "thicknesses",    "type",        "units"};
 
-/// Names that mean the same.
+/// Maps synonyms of a field's name to one of them.
 std::string canonical(std::string_view name) {
   std::string key = lowerCase(name);
   std::erase_if(key, [](char c) { return c == ' ' || c == '\t'; });
@@ -30,7 +30,8 @@ std::string canonical(std::string_view name) {
   return key;
 }
 
-/// As teem writes values of key/value pairs: \n and \\ for what would end the line.
+/// Undoes teem's escapes in the values of key/value pairs:
+/// and \\.
 std::string unescaped(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -58,7 +59,7 @@ Error NrrdFields::fail(const char* code, const std::string& name, std::string me
 }
 
 NrrdFields readNrrdFields(const std::string& path) {
-  ByteStream(path, "nrrd", 0, Packing::kNone);  // refuses anything but a file
+  ByteStream(path, "nrrd", 0, Packing::kNone);  // refuses anything but a regular file
   std::ifstream file(path, std::ios::binary);
   char magic[8] = {};
   file.read(magic, sizeof magic);

@@ -1,5 +1,5 @@
 #pragma once
-/// The lines of a NRRD header, as they stand.
+/// The lines of a NRRD header, uninterpreted.
 
 #include <cstdint>
 #include <map>
@@ -13,7 +13,7 @@ struct NrrdFields {
   std::string path;
   std::map<std::string, std::string>
       fields;                                ///< lower-case names without blanks: "spacedirections"
-  std::map<std::string, int> lines;          ///< where each stands
+  std::map<std::string, int> lines;          ///< line number of each
   std::map<std::string, std::string> pairs;  ///< `key:=value`
   std::uint64_t end = 0;                     ///< [bytes] behind the empty line
   bool has_end = false;                      ///< there is an empty line
@@ -24,13 +24,13 @@ struct NrrdFields {
   }
   /// @throws Error (kInput, nrrd.field) if the header has no such field.
   [[nodiscard]] const std::string& require(const std::string& name) const;
-  /// What is wrong with field `name`.
+  /// An error about field `name`.
   [[nodiscard]] Error fail(const char* code, const std::string& name, std::string message,
                            std::string hint = {}) const;
 };
 
-/// @throws Error (kInput): missing, empty, no NRRD file, a line that is none of a header, a field
-/// given twice.
+/// @throws Error (kInput): missing, empty, not a NRRD file, a line that does not belong in a
+/// header, a field given twice.
 [[nodiscard]] NrrdFields readNrrdFields(const std::string& path);
 
 }  // namespace palpate::vdb

@@ -90,7 +90,7 @@ std::vector<std::string> readKinds(const NrrdFields& fields, std::size_t axes) {
   return kinds;
 }
 
-/// Which axes lie in space, and which one does not.
+/// Finds the axes that are spatial, and the one that is not.
 void sortAxes(const NrrdFields& fields, const std::vector<std::optional<Vec3>>& directions,
               NrrdHeader& out) {
   const std::vector<std::string> kinds = readKinds(fields, out.sizes.size());

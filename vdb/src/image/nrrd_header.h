@@ -17,16 +17,17 @@ namespace palpate::vdb {
 enum class NrrdEncoding { kRaw, kGzip, kText };
 
 struct NrrdHeader {
-  std::vector<std::int64_t> sizes;       ///< of all axes, the fastest first
-  std::array<std::size_t, 3> spatial{};  ///< the axes that lie in space
-  std::optional<std::size_t> other;      ///< the one that does not, of several entries
-  std::string other_kind;                ///< "list", "time", ...; empty: not said
+  std::vector<std::int64_t> sizes;       ///< for all axes, the fastest first
+  std::array<std::size_t, 3> spatial{};  ///< the spatial axes
+  std::optional<std::size_t> other;  ///< the axis that is not spatial, if it has several entries
+  std::string other_kind;            ///< "list", "time", ...; empty: not stated
   VoxelCoding coding;
   NrrdEncoding encoding = NrrdEncoding::kRaw;
-  std::string data_path;         ///< the header's own file, or the one it names
-  std::uint64_t data_begin = 0;  ///< [bytes] in that file, lines that are skipped passed
-  std::int64_t byte_skip = 0;    ///< [bytes] of the unpacked data; -1: raw data end the file
-  Place place;                   ///< [m], RAS
+  std::string data_path;         ///< the header's own file, or the one that it names
+  std::uint64_t data_begin = 0;  ///< [bytes] in that file, after the lines to skip
+  /// [bytes] Of the unpacked data to skip; -1: raw data are the last of the file
+  std::int64_t byte_skip = 0;
+  Place place;  ///< [m], RAS
   std::string length_unit;
   std::map<std::string, std::string> pairs;  ///< `key:=value` lines
   std::vector<std::string> notes;
@@ -42,7 +43,7 @@ struct NrrdHeader {
   }
 };
 
-/// @throws Error (kInput, codes "nrrd.*") for what cannot be read or placed in space.
+/// @throws Error (kInput, codes "nrrd.*") if the file cannot be read or placed in space.
 [[nodiscard]] NrrdHeader readNrrdHeader(const std::string& path, const ImageOptions& options);
 
 }  // namespace palpate::vdb

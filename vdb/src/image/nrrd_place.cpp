@@ -10,7 +10,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// [m] in the unit of space.
+/// [m] Size of one unit of the file's space.
 double metersPerUnit(const NrrdFields& fields, NrrdHeader& out) {
   const std::string* text = fields.find("spaceunits");
   out.length_unit = "mm";
@@ -75,7 +75,7 @@ Vec3 readOrigin(const NrrdFields& fields, std::vector<std::string>& notes) {
   return {(*v)[0], (*v)[1], (*v)[2]};
 }
 
-/// Spacings along the three axes in space, whatever says them.
+/// Spacings along the three spatial axes, from whichever field gives them.
 Vec3 readSpacings(const NrrdFields& fields, const std::vector<std::optional<Vec3>>& directions,
                   const NrrdHeader& header) {
   Vec3 spacing(0.0);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kPrefix = "Segment";
 
-/// N of "SegmentN_...".
+/// The number N of a key "SegmentN_...".
 std::optional<int> numberOfKey(std::string_view key) {
   if (!key.starts_with(kPrefix)) return {};
   const std::size_t bar = key.find('_');
@@ -23,8 +23,8 @@ std::optional<int> numberOfKey(std::string_view key) {
   return numberIn<int>(key.substr(kPrefix.size(), bar - kPrefix.size()));
 }
 
-/// The type out of Slicer's tags, "...|TerminologyEntry:CONTEXT~CATEGORY~TYPE~...|", where each is
-/// SCHEME^VALUE^MEANING.
+/// Takes the type from Slicer's tags, "...|TerminologyEntry:CONTEXT~CATEGORY~TYPE~...|", where each
+/// of the three is SCHEME^VALUE^MEANING.
 std::optional<LabelCode> codeIn(std::string_view tags) {
   constexpr std::string_view kKey = "TerminologyEntry:";
   constexpr int kType = 2;
@@ -69,7 +69,8 @@ void Segments::readOne(const std::map<std::string, std::string>& pairs, int numb
   }
   if (s.name.empty())
     throw fail("nrrd.segment", "segment " + std::to_string(number) + " has no name");
-  // Files before label values and shared layers were written: a layer each, with the value 1.
+  // Files from before label values and shared layers existed: one layer for each segment, with the
+  // value 1.
   s.layer = layers > 1 ? number : 0;
   const auto whole = [&](const char* name, int& value, int least, int most) {
     const std::string* const text = find(name);

@@ -8,8 +8,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Volume of a voxel against that of a box with the same edges: 1 for orthogonal axes, 0 for flat
-/// ones.
+/// Ratio of a voxel's volume to that of a box with the same edges: 1 for orthogonal axes, 0 for
+/// flat ones.
 double solidity(const Mat3& axes) {
   const double edges = glm::length(axes[0]) * glm::length(axes[1]) * glm::length(axes[2]);
   return edges > 0.0 ? std::abs(glm::determinant(axes)) / edges : 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-/// Where voxels lie.
+/// The place of voxels in space.
 
 #include <array>
 #include <string>
@@ -14,7 +14,7 @@ struct Place {
   Vec3 origin{0.0, 0.0, 0.0};
 };
 
-/// x and y negated: LPS to RAS and back.
+/// x and y negated: converts LPS to RAS and back.
 [[nodiscard]] Place turned(const Place& place) noexcept;
 
 [[nodiscard]] Place scaled(const Place& place, double factor) noexcept;
@@ -25,7 +25,8 @@ struct Place {
 /// Axis codes, "RAS".
 [[nodiscard]] std::string orientationCodes(const Mat3& axes);
 
-/// Largest distance between the two places of a corner of the image, in voxels of `a`.
+/// Largest distance, over the corners of the image, between their places by `a` and by `b`, in
+/// voxels of `a`.
 [[nodiscard]] double disagreement(const Place& a, const Place& b, const std::array<int, 3>& size);
 
 /// "4 x 5 x 6"

@@ -9,14 +9,14 @@
 namespace palpate::vdb {
 namespace {
 
-/// [mm] What positions in six digits leave of planes that are the same.
+/// [mm] Positions of one plane can differ by this much if written with six digits.
 constexpr double kSamePlane = 1e-3;
-/// [share of a step] As for slices of a series.
+/// [share of a step] The same tolerance as for slices of a series.
 constexpr double kEvenSteps = 0.05;
-/// More planes than any scan has: a position that was damaged.
+/// No scan has more planes; more come from a damaged position.
 constexpr double kMostPlanes = 4096.0;
 
-/// By how much of a step the farthest of `heights` is off a multiple of `step`.
+/// How far the worst of `heights` is off a multiple of `step`, in steps.
 double unevenness(const std::vector<double>& heights, double step) {
   double worst = 0.0;
   for (const double height : heights) {
@@ -79,7 +79,7 @@ PlaneGrid planeGrid(const PlaneSet& planes, int margin, const std::string& path,
   }
   const int last = grid.index[highest];
   grid.first = planes.positions[lowest];
-  // The planes of a tilted gantry do not lie straight above one another.
+  // With a tilted gantry the planes do not lie straight above one another.
   grid.step = last > 0 ? (planes.positions[highest] - grid.first) / static_cast<double>(last)
                        : step * normal;
   for (std::size_t n = 0; n < planes.positions.size(); ++n) {

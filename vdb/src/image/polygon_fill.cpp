@@ -12,7 +12,7 @@ std::vector<std::pair<int, int>> evenOddRuns(const std::vector<std::vector<Pixel
     for (std::size_t n = 0; n < polygon.size(); ++n) {
       const PixelPoint& a = polygon[n];
       const PixelPoint& b = polygon[(n + 1) % polygon.size()];
-      // A corner at the row's height counts for one of its two edges.
+      // A corner at the row's height counts for only one of its two edges.
       if ((a.j > j) == (b.j > j)) continue;
       crossings.push_back(a.i + (j - a.j) / (b.j - a.j) * (b.i - a.i));
     }

@@ -1,5 +1,5 @@
 #pragma once
-/// Which pixels of a slice are inside closed polygons.
+/// Finds the pixels of a slice that are inside closed polygons.
 
 #include <cstdint>
 #include <utility>
@@ -7,15 +7,15 @@
 
 namespace palpate::vdb {
 
-/// In pixels: pixel (i, j) has its center there.
+/// In pixels: the center of pixel (i, j) is at (i, j).
 struct PixelPoint {
   double i = 0.0;
   double j = 0.0;
 };
 
-/// Runs of pixels of row `j`, first to before last, whose centers are inside an odd number of the
-/// polygons; `columns` in the row. An edge that goes up or down through a center has it on its
-/// right.
+/// Runs of pixels of row `j` (first, and one past the last) whose centers are inside an odd number
+/// of the polygons; the row has `columns` pixels. A center on an edge that goes up or down counts
+/// as right of the edge.
 [[nodiscard]] std::vector<std::pair<int, int>> evenOddRuns(
     const std::vector<std::vector<PixelPoint>>& polygons, int j, int columns);
 

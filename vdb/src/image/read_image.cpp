@@ -45,14 +45,14 @@ Format requireFormat(const std::string& path, const ImageOptions& options) {
       path);
 }
 
-/// Refuses what a format has no use for: an option that does nothing is a slip.
+/// Refuses options that a format does not use: an option without effect is a mistake.
 void checkOptions(Format format, const ImageOptions& options, const std::string& path) {
   const auto refuse = [&](bool given, const std::string& what, const char* formats) {
     if (!given) return;
     throw inputError("image.option", what + " applies to " + formats, "leave it out", path);
   };
   refuse(format != Format::kDicom && !options.series.empty(), "a series", "DICOM folders");
-  // Each mask is looked at by itself.
+  // Each mask is checked by itself.
   if (format == Format::kMasks) return;
   refuse(format != Format::kDicom && !options.priority.empty(), "a priority",
          "structures that were segmented one by one");

@@ -1,5 +1,5 @@
 #pragma once
-/// One reader for each format, with their infos.
+/// One reader for each format, and one for its header alone.
 
 #include <string>
 
@@ -23,9 +23,9 @@ namespace palpate::vdb {
 [[nodiscard]] ImageInfo readDicomInfo(const std::string& path, const ImageOptions& options);
 [[nodiscard]] LabelCodes readDicomCodes(const std::string& path, const ImageOptions& options);
 
-/// True if the file begins as DICOM files do.
+/// True if the file begins the way DICOM files do.
 [[nodiscard]] bool isDicomFile(const std::string& path);
-/// True if one of the folder's own files does.
+/// True if a file directly in the folder is a DICOM file.
 [[nodiscard]] bool isDicomFolder(const std::string& path);
 
 }  // namespace palpate::vdb

@@ -46,7 +46,7 @@ std::vector<int> resolveLabels(const std::vector<std::string>& match, const Name
     const bool is_glob = entry.find_first_of("*?") != std::string::npos;
     bool found = false;
     for (const auto& [value, name] : names) {
-      // Label 0 is the background of almost every table; a glob that took it in would fill the
+      // Label 0 is the background in almost every table; a glob that matched it would fill the
       // image.
       if (name == entry || (is_glob && value != 0 && matchesGlob(entry, name))) {
         values.insert(value);

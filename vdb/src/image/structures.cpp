@@ -16,7 +16,7 @@ constexpr std::size_t kMostTold = 8;
 
 std::string cubicCentimeters(double cubic_meters) { return shortNumber(cubic_meters * 1e6, 3); }
 
-/// The place of each structure in the order in which they are painted: the last has what it has.
+/// The structures in the order in which they are painted: a later one overwrites earlier ones.
 std::vector<std::size_t> paintOrder(const std::vector<Structure>& structures,
                                     const std::vector<std::string>& priority,
                                     const std::string& source) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Structures that were segmented one by one, put together into one label image.
+/// Puts structures that were segmented one by one together into one label image.
 
 #include <cstdint>
 #include <map>
@@ -17,14 +17,15 @@ struct VoxelRun {
   std::uint64_t end = 0;
 };
 
-/// One structure, in little memory: few of its voxels have a neighbor along i that is not its own.
+/// The voxels of one structure as runs along i, which takes little memory: most neighbors along i
+/// belong to the same structure.
 struct Structure {
   std::string name;
   int label = 0;  ///< from 1
   std::vector<VoxelRun> runs;
   std::uint64_t voxels = 0;
 
-  /// Voxels that come in their order, each once.
+  /// Adds voxels; they must come in order, each once.
   void add(std::uint64_t begin, std::uint64_t end) {
     if (!runs.empty() && runs.back().end == begin) {
       runs.back().end = end;
@@ -35,13 +36,13 @@ struct Structure {
   }
 };
 
-/// How much of which structure went to which other one.
+/// Counts how many voxels of each structure went to another one.
 class Overlaps {
  public:
-  /// So many voxels of `loser` are `winner`'s.
+  /// Records that `voxels` voxels of `loser` went to `winner`.
   void add(int winner, int loser, std::uint64_t voxels) { pairs_[{winner, loser}] += voxels; }
-  /// One note on all shared voxels, if there are any. `voxels`: their number; `rule`: who has them;
-  /// `voxel_volume` [m3].
+  /// Adds one note on all shared voxels, if there are any. `voxels`: their number; `rule`: which
+  /// structure gets them; `voxel_volume` [m3].
   void tell(std::uint64_t voxels, const std::string& rule, const NameTable& names,
             double voxel_volume, std::vector<std::string>& notes) const;
 
@@ -50,9 +51,9 @@ class Overlaps {
 };
 
 /// Label values of an image of `image.size`. Where structures overlap, the one that `priority`
-/// names first has the voxel; else the one of fewer voxels, of equal ones the later. `what`:
-/// "masks", for the note on shared voxels, which goes to `image.notes` as one on structures without
-/// voxels does.
+/// names first gets the voxel; otherwise the one with fewer voxels, and of equal ones the later.
+/// `what`: "masks", for the note on shared voxels. That note goes to `image.notes`, as does one on
+/// structures without voxels.
 /// @throws Error (kInput, labels.priority) for a name that no structure has.
 [[nodiscard]] std::vector<float> mergeStructures(const std::vector<Structure>& structures,
                                                  const std::string& what,

@@ -5,8 +5,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Bytes of the UTF-8 character at the front of `text`; 0 if there is none. Overlong forms,
-/// surrogates and what lies beyond U+10FFFF are not UTF-8.
+/// Number of bytes of the UTF-8 character at the front of `text`; 0 if there is none. Overlong
+/// forms, surrogates and code points beyond U+10FFFF are not UTF-8.
 std::size_t characterAtFront(std::string_view text) noexcept {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);

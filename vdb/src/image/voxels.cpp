@@ -54,7 +54,7 @@ void convertVoxels(std::span<unsigned char> raw, const VoxelCoding& coding, floa
 
 std::vector<float> readVoxels(ByteStream& stream, std::uint64_t count, const VoxelCoding& coding,
                               Oddities& odd) {
-  // Memory is touched as voxels come, not as the header promises them.
+  // Memory grows as voxels arrive, not by the size that the header promises.
   std::vector<float> values;
   values.reserve(count);
   const std::size_t bytes = bytesOf(coding.type);

@@ -8,7 +8,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// The voxels across the faces of one.
+/// The neighbors of a voxel across its faces.
 class Neighbors {
  public:
   explicit Neighbors(const std::array<int, 3>& size)
@@ -36,8 +36,8 @@ class Neighbors {
 
 bool fillUnknown(const std::array<int, 3>& size, std::vector<float>& values) {
   const Neighbors neighbors(size);
-  // A ring's voxels are marked when they are found, and get their values together, so that none
-  // counts for another of its ring.
+  // The voxels of a ring are marked when they are found, and get their values together, so that no
+  // voxel counts as a neighbor of another one in its ring.
   std::vector<std::size_t> ring;
   std::vector<bool> found(values.size(), false);
   bool any_known = false;

@@ -1,5 +1,5 @@
 #pragma once
-/// Voxels that are not known take what their neighbors have.
+/// Fills voxels that are not known from their neighbors.
 
 #include <array>
 #include <vector>

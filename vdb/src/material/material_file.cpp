@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kUnit = "unit";
 constexpr const char* kQuantised = "palpate:quantised";
-/// A box of more voxels than this is a mistake, or would not fit a brick's index.
+/// More voxels than this are a mistake, or would exceed the index of a block.
 constexpr double kMostVoxels = 2147483647.0;
 
 std::string textOf(const openvdb::GridBase& grid, const char* key) {
@@ -27,7 +27,7 @@ std::string textOf(const openvdb::GridBase& grid, const char* key) {
   return value ? value->str() : std::string();
 }
 
-/// "16 bits, least 200, step 0.03"; nothing if it is not just that.
+/// Parses "16 bits, least 200, step 0.03"; nothing if the text differs in any way.
 Quantisation quantisationOf(const openvdb::GridBase& grid) {
   Quantisation how;
   const std::string text = textOf(grid, kQuantised);
@@ -60,7 +60,7 @@ void requireFogVolume(const openvdb::GridBase& grid, const std::string& path) {
   }
 }
 
-/// SI units in one unit of the grid's values.
+/// Factor from the unit of the grid's values to SI units.
 double valueScale(const openvdb::GridBase& grid, const MaterialGridRequest& request,
                   const std::string& path) {
   std::string unit = textOf(grid, kUnit);
@@ -87,7 +87,7 @@ double valueScale(const openvdb::GridBase& grid, const MaterialGridRequest& requ
   return one.si;
 }
 
-/// Where voxel (0, 0, 0) of `box` is, and the steps from voxel to voxel [m].
+/// Finds the place of voxel (0, 0, 0) of `box`, and the steps from voxel to voxel [m].
 void placeOf(const openvdb::FloatGrid& grid, const openvdb::CoordBBox& box, double meters,
              const std::string& path, Image& image) {
   if (!grid.transform().isLinear()) {
@@ -99,7 +99,7 @@ void placeOf(const openvdb::FloatGrid& grid, const openvdb::CoordBBox& box, doub
     const openvdb::Vec3d p = grid.indexToWorld(index);
     return Vec3(p.x(), p.y(), p.z()) * meters;
   };
-  // By the map's own matrix, so that no difference of far points rounds.
+  // From the map's own matrix, because differences of far points would lose digits.
   const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < 3; ++i) image.axes[axis][i] = m(axis, i) * meters;
@@ -230,7 +230,7 @@ MaterialGridPtr readMaterialGrid(const std::string& path, const MaterialGridRequ
     const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.read(entry));
     Image image = denseOf(*grid, *meters, scale, path);
     image.source = path + ": " + entry.name();
-    // In another unit the steps would be others.
+    // In another unit the quantization steps would be different.
     const Quantisation known = scale == 1.0 ? quantisationOf(*grid) : Quantisation{};
     return std::make_shared<const MaterialGrid>(std::move(image), request.tolerance, known,
                                                 request.max_memory);

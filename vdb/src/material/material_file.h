@@ -1,5 +1,6 @@
 #pragma once
-/// Material grids as OpenVDB's: fog volumes with the unit of their values in the metadata.
+/// Material grids as OpenVDB stores them: fog volumes with the unit of their values in the
+/// metadata.
 
 #include <openvdb/openvdb.h>
 
@@ -7,7 +8,7 @@
 
 namespace palpate::vdb {
 
-/// Its voxels are those of the map, bit for bit; the metadata says how they are stored.
+/// A grid with the voxels of the map, bit for bit; its metadata says how they are quantized.
 [[nodiscard]] openvdb::FloatGrid::Ptr toOpenVdb(const NamedMaterialGrid& named);
 
 }  // namespace palpate::vdb

@@ -14,7 +14,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// [SI unit] A voxel of `count` steps, as files hold it.
+/// [SI unit] The value of a voxel of `count` steps, rounded to the float that files hold.
 float stepped(const Quantisation& how, double count) noexcept {
   return static_cast<float>(how.least + how.step * count);
 }
@@ -33,7 +33,7 @@ double errorOf(const Quantisation& how, const std::vector<float>& values) {
   return most;
 }
 
-/// The fewest bits that keep within `tolerance`.
+/// The fewest bits whose error stays within `tolerance`.
 Quantisation chooseBits(const std::vector<float>& values, MaterialMap::Range range,
                         double tolerance) {
   if (range.least == range.most) return {};
@@ -42,7 +42,8 @@ Quantisation chooseBits(const std::vector<float>& values, MaterialMap::Range ran
     how.bits = bits;
     how.least = range.least;
     how.step = (range.most - range.least) / (std::exp2(bits) - 1.0);
-    // Half a step is what is to be expected; fewer values may do with less.
+    // The error is half a step, or less if there are few distinct values: try if the step is not
+    // far too large.
     if (tolerance > 0.0 && how.step <= 4096.0 * tolerance) {
       how.error = errorOf(how, values);
       if (how.error <= tolerance) return how;
@@ -57,7 +58,8 @@ bool isMadeOf(const Quantisation& known, const std::vector<float>& values) {
                      [&](float value) { return stepped(known, countOf(known, value)) == value; });
 }
 
-/// Weights of the three nearest voxels, and their slopes by voxel, at `t` from the middle one.
+/// Weights of the three nearest voxels along an axis, and the derivatives of the weights per voxel,
+/// at `t` from the middle one.
 struct Weights {
   std::array<double, 3> value;
   std::array<double, 3> slope;
@@ -67,7 +69,7 @@ struct Weights {
         slope{t - 0.5, -2.0 * t, t + 0.5} {}
 };
 
-/// Of stored counts (or values), and its gradient by voxel.
+/// Interpolates stored counts (or values), with the gradient per voxel.
 template <typename T>
 MaterialMap::Sample spline(const T* corner, int row, const Weights& x, const Weights& y,
                            const Weights& z) noexcept {
@@ -111,7 +113,8 @@ double splineValue(const T* corner, int row, const Weights& x, const Weights& y,
   return out;
 }
 
-/// Counts (or values) of a block with its rim; voxels beyond the grid are those at its edge.
+/// Copies the counts (or values) of a block with its border; beyond the grid the outermost voxels
+/// are repeated.
 template <typename T, typename Count>
 void fillBlock(const Image& voxels, const std::array<int, 3>& first, T* out, const Count& count) {
   constexpr int kRow = 10;
@@ -127,7 +130,7 @@ void fillBlock(const Image& voxels, const std::array<int, 3>& first, T* out, con
   }
 }
 
-/// All blocks of a grid, those of one value left out.
+/// Fills all blocks of a grid; a block of one value is not stored.
 template <typename T, typename Blocks, typename Count>
 void fillBlocks(const Image& voxels, Blocks& blocks, std::vector<T>& data, const Count& count) {
   const auto& n = blocks.count;
@@ -175,7 +178,8 @@ Box3 boundsOf(const Image& image) {
 double MaterialGrid::Blocks::at(int i, int j, int k, int bits) const noexcept {
   const Block& block = blockOf(i, j, k);
   if (block.first == kUniform) return static_cast<double>(block.uniform);
-  constexpr std::size_t kMiddle = (kRow + 1) * kRow + 1;  // from the first of 3^3 to their middle
+  // From the first of the 3^3 voxels to the middle one
+  constexpr std::size_t kMiddle = (kRow + 1) * kRow + 1;
   const std::size_t voxel = block.first * kVolume + cornerOf(i, j, k) + kMiddle;
   if (bits == 8) return bytes[voxel];
   return bits == 16 ? static_cast<double>(words[voxel]) : static_cast<double>(floats[voxel]);
@@ -202,7 +206,7 @@ void MaterialGrid::store(Image voxels, double tolerance, const Quantisation* kno
   const bool is_known = known != nullptr && isMadeOf(*known, voxels.values);
   Quantisation how = is_known ? *known : chooseBits(voxels.values, range_, tolerance);
   if (how.bits != 32) {
-    // What is read are the steps themselves, not the floats nearest to them.
+    // Samples read the exact steps, not the floats nearest to them.
     range_ = {how.least + how.step * countOf(how, *low),
               how.least + how.step * countOf(how, *high)};
   }
@@ -250,7 +254,7 @@ void MaterialGrid::store(Image voxels, double tolerance, const Quantisation* kno
 }
 
 struct MaterialGrid::Place {
-  std::size_t corner = 0;  ///< of the 27 voxels, in the data of the blocks
+  std::size_t corner = 0;  ///< index of the first of the 27 voxels in the data of the blocks
   std::array<double, 3> off{};
   const Blocks::Block* block = nullptr;
 };
@@ -263,9 +267,9 @@ MaterialGrid::Place MaterialGrid::placeOf(const Vec3& p) const noexcept {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const int last = blocks.size[a] - 1;
-    // Half a voxel beyond the outermost center the three voxels are one, and so on from there.
+    // Half a voxel beyond the outermost center all three voxels are the same, and so on outwards.
     const double u = std::clamp(at[axis], -0.5, last + 0.5);
-    // From the first voxel's outer face; not below zero, so that cutting it off rounds it down.
+    // Counted from the first voxel's outer face: not negative, so that truncation rounds down.
     const double voxels = u + 0.5;
     nearest[a] = std::min(static_cast<int>(voxels), last);
     out.off[a] = u - nearest[a];
@@ -300,7 +304,7 @@ MaterialMap::Sample MaterialGrid::sample(const Vec3& p) const noexcept {
   const Weights z(place.off[2]);
   Sample out =
       read([&](const auto* data) { return spline(data + place.corner, Blocks::kRow, x, y, z); });
-  // Between its voxels but for rounding.
+  // Rounding must not put the value outside the range of the voxels.
   out.value = std::clamp(how.least + how.step * out.value, range_.least, range_.most);
   out.gradient = to_world_slope_ * out.gradient;
   return out;

@@ -9,12 +9,13 @@
 namespace palpate::vdb {
 namespace {
 
-/// Twice the area of a, b, c seen against `normal`; positive if they turn left.
+/// Twice the area of a, b, c seen against `normal`; positive if they are counterclockwise.
 double turn(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
   return glm::dot(glm::cross(b - a, c - a), normal);
 }
 
-/// Whether `n` corners are strictly convex and go round once: a fan then needs no search for ears.
+/// Whether `n` corners form a strictly convex polygon that goes round once: then a fan of triangles
+/// does, without a search for ears.
 template <typename At>
 bool isFan(const At& at, std::size_t n, const Vec3& normal) {
   for (std::size_t i = 0; i < n; ++i) {
@@ -48,7 +49,7 @@ void MeshBuilder::refuseVertex(const Vec3& p, const std::string& where, int line
 }
 
 std::uint32_t MeshBuilder::weld(const Vec3& p) {
-  // Adding zero turns -0 into +0, which are one position.
+  // Adding zero turns -0 into +0, so that both count as one position.
   const std::array<std::uint64_t, 3> key{std::bit_cast<std::uint64_t>(p.x + 0.0),
                                          std::bit_cast<std::uint64_t>(p.y + 0.0),
                                          std::bit_cast<std::uint64_t>(p.z + 0.0)};
@@ -58,8 +59,9 @@ std::uint32_t MeshBuilder::weld(const Vec3& p) {
   return entry->second;
 }
 
-/// A triangle with two corners in one point has no area, and its other two sides cancel. One with
-/// three corners in a line has no area either, but without it its neighbors would not meet.
+/// A triangle with two corners at one point has no area, and its other two sides cancel, so that it
+/// is dropped. One with three corners in a line has no area either, but without it its neighbors
+/// would not meet.
 void MeshBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   if (a == b || b == c || c == a) {
     ++mesh_.dropped_triangles;
@@ -68,11 +70,11 @@ void MeshBuilder::addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c)
   }
 }
 
-/// The search for ears takes the cube of a face's corners in the worst case, and their square as a
-/// rule.
+/// The time of the search for ears grows with the square of a face's corners as a rule, and with
+/// their cube in the worst case.
 void MeshBuilder::spend(std::size_t tests, std::size_t corners) {
   constexpr std::uint64_t kMost =
-      200'000'000;  // seconds; faces of a thousand corners by the hundred
+      200'000'000;  // some seconds; enough for hundreds of faces of a thousand corners
   constexpr std::uint64_t kPoll = 1U << 20U;
   const std::uint64_t before = spent_;
   spent_ += tests;
@@ -112,7 +114,7 @@ void MeshBuilder::addPolygon(std::span<const std::uint32_t> corners) {
       }
       if (is_ear) ear = i;
     }
-    if (ear == n) ear = 0;  // no area or crossing itself: any cut closes it
+    if (ear == n) ear = 0;  // no area, or it crosses itself: any cut will do
     addTriangle(rest[(ear + n - 1) % n], rest[ear], rest[(ear + 1) % n]);
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
   }

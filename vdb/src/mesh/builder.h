@@ -1,5 +1,5 @@
 #pragma once
-/// Puts a mesh together from what a file says: checks, welds, cuts polygons.
+/// Puts a mesh together from the contents of a file: checks, welds, cuts polygons.
 
 #include <bit>
 #include <cstdint>
@@ -19,9 +19,8 @@ class MeshBuilder {
     mesh_.source = std::move(source);
   }
 
-  /// Number of the welded vertex at `p` [units of the file]. `where` says which one it is in the
-  /// file
-  /// ("vertex 7 (from 0)"), `line` where that is.
+  /// Number of the welded vertex at `p` [units of the file]. `where` names the vertex for messages
+  /// ("vertex 7 (from 0)"), `line` is its line in the file.
   /// @throws Error (kInput, mesh.not_finite)
   template <typename Where>
   std::uint32_t addVertex(const Vec3& p, const Where& where, int line = 0) {
@@ -30,8 +29,9 @@ class MeshBuilder {
     return weld(p * meters_per_unit_);
   }
 
-  /// Corners are numbers from addVertex(); polygons are cut into triangles by their ears.
-  /// @throws Error (kInput, mesh.polygon) once that takes too long, kCancelled once a stop was
+  /// Corners are numbers from addVertex(); polygons are triangulated by cutting off ears.
+  /// @throws Error (kInput, mesh.polygon) if that takes too long, kCancelled if the user asked to
+  /// stop.
   /// asked for.
   void addPolygon(std::span<const std::uint32_t> corners);
 
@@ -55,7 +55,7 @@ class MeshBuilder {
   void addTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
   void spend(std::size_t tests, std::size_t corners);
 
-  std::uint64_t spent_ = 0;  ///< tests of ears
+  std::uint64_t spent_ = 0;  ///< tests of ears so far
   std::uint64_t polygons_ = 0;
   std::uint64_t vertices_ = 0;
   double meters_per_unit_;
@@ -63,24 +63,24 @@ class MeshBuilder {
   std::unordered_map<std::array<std::uint64_t, 3>, std::uint32_t, BitsHash> numbers_;
 };
 
-/// @throws Error (kInput, mesh.index): a face that names vertex `index` of `count`.
+/// @throws Error (kInput, mesh.index): a face names vertex `index`, but there are only `count`.
 [[noreturn]] void refuseIndex(const std::string& file, std::size_t face, long long index,
                               std::size_t count, int line = 0);
 
 /// STL, ASCII and binary; told apart by the length of the file, not by its first word.
 [[nodiscard]] Mesh readStl(const std::string& path, double meters_per_unit);
 
-/// Wavefront OBJ: vertices and faces; normals, groups and materials are passed over.
+/// Wavefront OBJ: vertices and faces; normals, groups and materials are ignored.
 [[nodiscard]] Mesh readObj(const std::string& path, double meters_per_unit);
 
 /// PLY, ASCII and binary of either byte order.
 [[nodiscard]] Mesh readPly(const std::string& path, double meters_per_unit);
 
-/// Legacy VTK polydata, ASCII and binary: polygons and triangle strips; points and lines are passed
-/// over.
+/// Legacy VTK polydata, ASCII and binary: polygons and triangle strips; points and lines are
+/// ignored.
 [[nodiscard]] Mesh readVtk(const std::string& path, double meters_per_unit);
 
-/// What the first lines of a file say of its space; kStated if they do not.
+/// The space that the first lines of a file state; kStated if they state none.
 [[nodiscard]] Space statedSpace(const std::string& path);
 
 /// The whole file. @throws Error (kInput)

@@ -6,7 +6,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// One triangle's side, under the name that both of its triangles give it.
+/// A side of a triangle, named by its vertices in a fixed order, so that both triangles use the
+/// same name.
 struct HalfEdge {
   std::uint32_t low;
   std::uint32_t high;
@@ -20,7 +21,7 @@ struct HalfEdge {
   }
 };
 
-/// Vertices joined by triangles.
+/// Connected components of vertices, joined by triangles.
 class Components {
  public:
   explicit Components(std::size_t vertices) : parent_(vertices) {

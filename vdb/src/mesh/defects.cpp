@@ -17,7 +17,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// Sets of vertices that hang together.
+/// Connected sets of vertices.
 class Sets {
  public:
   explicit Sets(std::size_t vertices) : parent_(vertices) {
@@ -70,7 +70,8 @@ void findHoles(const std::vector<Vec3>& vertices, const std::vector<Side>& sides
     sets.join(sides[begin].low, sides[begin].high);
   });
   defects.boundary_edges = borders.size();
-  // The edges of one hole next to each other, holes in the order of their vertices.
+  // Sort edges so that those of one hole are adjacent, and holes are in the order of their
+  // vertices.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> by_hole;
   for (std::uint32_t n = 0; n < borders.size(); ++n)
     by_hole.emplace_back(sets.root(borders[n].low), n);
@@ -137,9 +138,9 @@ void findCrossings(const std::vector<Vec3>& vertices, const std::vector<Triangle
   }
 }
 
-/// Triangles that hang together by corners.
+/// Triangles connected by corners.
 struct Part {
-  /// The corners that lie farthest out along the axes, to both sides.
+  /// The corners farthest out along each axis, in both directions.
   std::array<std::uint32_t, 6> extremes{};
   double volume = 0.0;  ///< [m^3] signed
 };
@@ -154,7 +155,7 @@ std::vector<Part> findParts(const std::vector<Vec3>& vertices,
   }
   constexpr std::uint32_t kNone = 0xffffffffU;
   std::vector<std::uint32_t> name(vertices.size(), kNone);
-  std::vector<Vec3> base;  // of each part
+  std::vector<Vec3> base;  // for each part
   std::vector<Part> parts;
   for (const auto& t : triangles) {
     std::uint32_t& part = name[sets.root(t[0])];
@@ -180,7 +181,7 @@ std::vector<Part> findParts(const std::vector<Vec3>& vertices,
   return parts;
 }
 
-/// Which parts lie around others: by the walls below a place.
+/// Finds the parts that lie around others, by counting the walls below a point.
 class Surroundings {
  public:
   Surroundings(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
@@ -192,7 +193,7 @@ class Surroundings {
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
 
-  /// Numbers of the parts that have all extremes of part `n` inside, sorted.
+  /// Numbers of the parts that contain all extreme corners of part `n`, sorted.
   [[nodiscard]] std::vector<std::uint32_t> around(std::uint32_t n) const {
     std::vector<std::uint32_t> all;
     for (std::size_t i = 0; i < parts_[n].extremes.size(); ++i) {
@@ -234,13 +235,13 @@ class Surroundings {
   std::vector<Part> parts_;
 };
 
-/// Tells hollows from parts that are inside out, by what lies around each.
+/// Tells hollows from parts that are inside out, by the parts around each.
 void sortParts(const Surroundings& surroundings, MeshDefects& defects) {
   const std::vector<Part>& parts = surroundings.parts();
   defects.parts = parts.size();
   for (std::uint32_t n = 0; n < parts.size(); ++n) {
     const Part& part = parts[n];
-    const Part* next = nullptr;  // the smallest around it
+    const Part* next = nullptr;  // the smallest part around it
     for (const std::uint32_t other : surroundings.around(n)) {
       if (next == nullptr || std::abs(parts[other].volume) < std::abs(next->volume)) {
         next = &parts[other];

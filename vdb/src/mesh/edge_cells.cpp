@@ -69,7 +69,7 @@ EdgeCells::EdgeCells(const std::vector<Vec3>& vertices, const std::vector<MeshTr
   }
   const double half = 0.5 * size;
   const double radius = std::sqrt(3.0) * half;
-  // The cells along each edge, each once.
+  // The cells along all edges, without duplicates.
   std::vector<std::array<std::int64_t, 3>> cells;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     const Vec3 lo = glm::floor((edge_boxes[e].lo - reach - lo_) / size);
@@ -94,8 +94,9 @@ EdgeCells::EdgeCells(const std::vector<Vec3>& vertices, const std::vector<MeshTr
   std::vector<std::pair<double, std::uint32_t>> near;
   for (const auto& [x, y, z] : cells) {
     const Vec3 center = lo_ + size * (Vec3(x, y, z) + 0.5);
-    // Nothing farther from the middle than the nearest and the cell's diameter is nearest anywhere
-    // in it. That nearest is no farther than the edge that the cell is about.
+    // A triangle can be nearest to a point of the cell only if it is no farther from the middle
+    // than the nearest triangle plus the cell's diameter. The nearest one is at most as far as the
+    // edge in this cell.
     near.clear();
     double least = reach + radius;
     triangle_tree.visitMeeting(

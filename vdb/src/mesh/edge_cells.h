@@ -1,5 +1,5 @@
 #pragma once
-/// Triangles and sharp edges by the places that they are nearest to.
+/// Finds the triangles and sharp edges that may be nearest to a place.
 
 #include <array>
 #include <cstdint>
@@ -15,7 +15,7 @@ using MeshTriangle = std::array<std::uint32_t, 3>;
 /// The nearest point of a triangle: in its face, on a side or at a corner.
 struct NearestPoint {
   Vec3 point{0.0};
-  double square = kInfinity;  ///< of the distance
+  double square = kInfinity;  ///< squared distance
   int feature =
       0;  ///< 0: face; 1 to 3: the side from corner feature - 1; 4 to 6: corner feature - 4
 };
@@ -23,23 +23,23 @@ struct NearestPoint {
 [[nodiscard]] NearestPoint nearestOf(const Vec3& a, const Vec3& b, const Vec3& c,
                                      const Vec3& p) noexcept;
 
-/// The nearest point of the stretch from a to b.
+/// The nearest point of the segment from a to b.
 [[nodiscard]] Vec3 nearestOf(const Vec3& a, const Vec3& b, const Vec3& p) noexcept;
 
-/// Cubes of space about sharp edges, each with the triangles one of which is nearest to any point
-/// in it, and with the edges within reach.
+/// Cells of space near sharp edges. Each cell lists triangles that include the nearest one to any
+/// point in it, and the edges within reach.
 class EdgeCells {
  public:
   struct Lists {
     std::span<const std::uint32_t> triangles;
-    std::span<const std::uint32_t> edges;  ///< none: no sharp edge is within reach
+    std::span<const std::uint32_t> edges;  ///< empty: no sharp edge is within reach
   };
 
-  /// `edges`: pairs of vertices. `reach` and `size` of a cell [m].
+  /// `edges`: pairs of vertices. `reach` [m] from them; `size` [m] of a cell.
   EdgeCells(const std::vector<Vec3>& vertices, const std::vector<MeshTriangle>& triangles,
             const std::vector<std::array<std::uint32_t, 2>>& edges, double reach, double size);
 
-  /// Of the cell that holds a point. Real-time safe.
+  /// The lists of the cell that holds a point. Real-time safe.
   [[nodiscard]] Lists at(const Vec3& p) const noexcept;
 
  private:
@@ -53,9 +53,9 @@ class EdgeCells {
   Box3 box_;
   struct Cell {
     std::uint64_t key = ~std::uint64_t{0};
-    std::uint32_t triangles = 0, edges = 0, end = 0;  ///< in lists_: triangles, then edges
+    std::uint32_t triangles = 0, edges = 0, end = 0;  ///< in lists_: first triangles, then edges
   };
-  std::vector<Cell> table_;  ///< open addressing; its size is a power of two
+  std::vector<Cell> table_;  ///< hash table with open addressing; its size is a power of two
   std::vector<std::uint32_t> lists_;
 };
 

@@ -24,7 +24,7 @@ class Bytes {
     out_.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
   void text(std::string_view text) { out_.append(text); }
-  /// As few digits as read back exactly.
+  /// Writes as few digits as read back exactly.
   void number(double value) {
     char digits[32];
     const auto end = std::to_chars(digits, digits + sizeof digits, value);
@@ -38,9 +38,9 @@ class Bytes {
   std::string out_;
 };
 
-/// As it is in a file of floats: vertices in one place then are one, and triangles with two corners
-/// there are left out. A side that is gone takes both its triangles with it, so that what was
-/// closed stays so.
+/// The mesh as a file of floats holds it: vertices that coincide as floats become one, and
+/// triangles with two corners at one place are left out. When a side shrinks to a point both its
+/// triangles go, so that a closed mesh stays closed.
 Mesh inFloats(const Mesh& mesh, double per_unit) {
   struct Hash {
     std::size_t operator()(const std::array<std::uint32_t, 3>& bits) const noexcept {
@@ -147,7 +147,7 @@ std::string encodeGlb(const Mesh& exact) {
   const Mesh mesh = inFloats(exact, 1.0);
   Vec3 lo(std::numeric_limits<double>::infinity()), hi = -lo;
   for (const Vec3& v : mesh.vertices) {
-    // The bounds are of what is written, to the last bit.
+    // The bounds must be those of the written floats, to the last bit.
     for (int axis = 0; axis < 3; ++axis) {
       const double written = static_cast<float>(v[axis]);
       lo[axis] = std::min(lo[axis], written);

@@ -57,7 +57,7 @@ Sum<2> difference(double a, double b) noexcept {
   return sum;
 }
 
-/// Each product of two differences has at most 2 * 2 * 2 terms.
+/// Each product of two differences has at most 2 * 2 * 2 = 8 terms, so that two of them have 16.
 Sum<16> minorOf(const Sum<2>& a, const Sum<2>& b, const Sum<2>& c, const Sum<2>& d) noexcept {
   Sum<16> sum;
   sum.addProduct(a, d, 1.0);
@@ -74,14 +74,14 @@ int exactSideOfPlane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
     rows[2][n] = difference(c[axis], d[axis]);
   }
   const auto& [p, q, r] = rows;
-  Sum<192> volume;  // three products of 2 and 16 terms, each of two
+  Sum<192> volume;  // three products of sums of 2 and 16 terms; each product of terms gives two
   volume.addProduct(p[0], minorOf(q[1], q[2], r[1], r[2]), 1.0);
   volume.addProduct(p[1], minorOf(q[2], q[0], r[2], r[0]), 1.0);
   volume.addProduct(p[2], minorOf(q[0], q[1], r[0], r[1]), 1.0);
   return volume.sign();
 }
 
-/// Every product of differences below is off by less than this share of its size.
+/// Relative error of each product of differences below.
 constexpr long double kRounding = 16.0L * std::numeric_limits<long double>::epsilon();
 
 }  // namespace

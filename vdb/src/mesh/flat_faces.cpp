@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffU;
 
-/// The plane of most of a face's area.
+/// The plane of a face: normal and offset are means over its triangles, weighted by area.
 FlatFace planeOf(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                  const std::vector<std::uint32_t>& members) {
   FlatFace face;
@@ -79,7 +79,8 @@ std::optional<FlatFaces> findFlatFaces(const std::vector<Vec3>& vertices,
           return std::abs(glm::dot(normal, vertices[v] - corner)) > tolerance;
         };
         const Vec3 turned = glm::cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
-        // Folded back onto the plane, as in a plate without thickness, it is another face.
+        // A triangle folded back onto the plane, as in a plate without thickness, belongs to
+        // another face.
         if (is_off(a) || is_off(b) || is_off(c) || glm::dot(turned, normal) < 0.0) continue;
         face_of[next] = number;
         members.push_back(next);

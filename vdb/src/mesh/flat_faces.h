@@ -1,5 +1,5 @@
 #pragma once
-/// Triangles that lie in one plane.
+/// Groups triangles that lie in one plane.
 
 #include <array>
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace palpate::vdb {
 
-/// A plane of some triangles; lengths in units of the caller's.
+/// The plane of some triangles; lengths in the caller's unit.
 struct FlatFace {
-  Vec3 normal{0.0};  ///< out of the solid
+  Vec3 normal{0.0};  ///< pointing out of the solid
   double offset = 0.0;
   std::vector<std::uint32_t> vertices;  ///< each once
 };
 
 /// An edge between two faces.
 struct FlatEdge {
-  std::uint32_t first, second;  ///< faces
-  std::uint32_t from, to;       ///< vertices
+  std::uint32_t first, second;  ///< numbers of faces
+  std::uint32_t from, to;       ///< numbers of vertices
 };
 
 struct FlatFaces {
@@ -28,8 +28,9 @@ struct FlatFaces {
   std::vector<FlatEdge> edges;
 };
 
-/// The faces of a closed mesh: the largest triangle first, and what hangs together with it within
-/// `tolerance` of its plane; then the next. Nothing if there are more than `most`.
+/// The flat faces of a closed mesh. Each starts from the largest triangle that is left, and takes
+/// the connected triangles within `tolerance` of its plane. Nothing if there are more than `most`
+/// faces.
 [[nodiscard]] std::optional<FlatFaces> findFlatFaces(
     const std::vector<Vec3>& vertices, const std::vector<std::array<std::uint32_t, 3>>& triangles,
     double tolerance, std::size_t most);

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kHead = 12;
 constexpr std::size_t kChunkHead = 8;
 constexpr std::uint32_t kJson = 0x4E4F534A;
-constexpr int kDeepest = 128;  ///< scenes nest arrays and objects a dozen deep
+constexpr int kDeepest = 128;  ///< real scenes nest arrays and objects about a dozen deep
 
 /// glTF is little endian.
 std::uint32_t wordAt(std::string_view bytes, std::size_t at) {
@@ -72,7 +72,7 @@ void checkGltf(const std::string& bytes, const std::string& extension, const std
     throw fail("the file promises " + std::to_string(whole) +
                " bytes, fewer than its own head and that of a part have");
   }
-  // Assimp asks the file's own length, not the one that is promised, whether a second part follows.
+  // To find a second chunk, Assimp uses the file's real length, not the length in the header.
   for (std::size_t at = kHead; at + kChunkHead <= bytes.size();) {
     const std::size_t length = wordAt(bytes, at);
     if (length > bytes.size() - at - kChunkHead) {
@@ -82,7 +82,7 @@ void checkGltf(const std::string& bytes, const std::string& extension, const std
     if (wordAt(bytes, at + 4) == kJson) {
       checkDepth(std::string_view(bytes).substr(at + kChunkHead, length), path);
     }
-    // The next part begins at a multiple of four bytes.
+    // The next chunk begins at a multiple of four bytes.
     at = (at + kChunkHead + length + 3) / 4 * 4;
   }
 }

@@ -29,8 +29,8 @@ class Obj {
                 {"mesh.unreadable", what, "export the mesh again", path_, scanner_.line});
   }
 
-  /// The next word of this line, and of the next one where this ends in a backslash; empty at the
-  /// end.
+  /// The next word of this line, or of the next one where this line ends in a backslash; empty at
+  /// the end.
   std::string_view wordOfLine() {
     for (;;) {
       std::string_view word = scanner_.wordOfLine();
@@ -90,7 +90,7 @@ class Obj {
   Scanner scanner_;
   const std::string& path_;
   MeshBuilder builder_;
-  std::vector<std::uint32_t> vertices_;  ///< number in the file -> welded vertex
+  std::vector<std::uint32_t> vertices_;  ///< number in the file -> number of the welded vertex
   std::vector<std::uint32_t> corners_;
 };
 

@@ -15,7 +15,7 @@ namespace {
 struct Property {
   std::string name;
   Scalar type = Scalar::kFloat32;
-  std::optional<Scalar> count;  ///< of a list: the type of its length
+  std::optional<Scalar> count;  ///< only for a list: the type of its length
 };
 
 struct Element {
@@ -40,7 +40,8 @@ class Ply {
   Mesh read() {
     readHeader();
     for (const Element& element : elements_) {
-      if (element.properties.empty()) continue;  // nothing to read, however many there are
+      // Such elements take no bytes, however many there are
+      if (element.properties.empty()) continue;
       for (std::size_t i = 0; i < element.count; ++i) {
         if (i % 1024 == 0) pollStop();
         if (is_text_) input_.skipBlanks();
@@ -166,7 +167,8 @@ class Ply {
       const double count = readScalar(*property.count);
       if (!(count >= 0.0)) refuse("a list of negative length");
       const bool wanted = property.name == "vertex_indices" || property.name == "vertex_index";
-      const auto items = static_cast<std::uint64_t>(std::min(count, 1e15));  // the file ends first
+      // A file with more would end first
+      const auto items = static_cast<std::uint64_t>(std::min(count, 1e15));
       for (std::uint64_t n = 0; n < items; ++n) {
         const double value = readScalar(property.type);
         if (wanted) indices_.push_back(value);
@@ -194,11 +196,11 @@ class Ply {
   MeshBuilder builder_;
   std::vector<Element> elements_;
   bool format_is_text_ = false;
-  bool is_text_ = true;  ///< the header always is
+  bool is_text_ = true;  ///< the header is always text
   bool swap_ = false;
   Vec3 position_{0.0};
   std::vector<double> indices_;
-  std::vector<std::uint32_t> vertices_;  ///< number in the file -> welded vertex
+  std::vector<std::uint32_t> vertices_;  ///< number in the file -> number of the welded vertex
   std::vector<std::uint32_t> corners_;
 };
 

@@ -17,14 +17,13 @@
 namespace palpate::vdb {
 namespace {
 
-/// Of the mesh's size: what lies as near to a plane lies in it. Files of floats are off by up to
-/// 1e-7.
+/// Relative to the mesh's size: a point this near to a plane counts as lying in it. Coordinates in
+/// floats are off by up to 1e-7.
 constexpr double kFlat = 1e-6;
-/// Deeper nests of pockets within pockets are none that a tree of half-spaces is better for than a
-/// grid.
+/// For pockets nested deeper than this, a grid is better than a tree of half-spaces.
 constexpr int kDeepest = 8;
 
-/// A tree over half-spaces within a box that is known.
+/// A tree of half-spaces with a known bounding box.
 class Polyhedron final : public Field {
  public:
   Polyhedron(FieldPtr tree, const Box3& bounds, double feature)
@@ -51,14 +50,15 @@ class Polyhedron final : public Field {
 };
 
 /// Builds the tree from outside in. A solid is the intersection of the half-spaces of those faces
-/// that lie on its convex hull, less the pockets that the hull closes. A pocket is bounded by faces
-/// that hang together without crossing an edge of the hull; its lids lie in planes of the hull,
-/// which hold already, so that it is the solid of its own faces, turned inside out, built alike.
+/// that lie on its convex hull, minus the pockets that the hull closes. A pocket is bounded by
+/// connected faces that do not cross an edge of the hull. Its lids lie in planes of the hull, whose
+/// half-spaces are in the intersection already. So the pocket is the solid of its own faces turned
+/// inside out, and is built the same way.
 class TreeBuilder {
  public:
   TreeBuilder(const std::vector<Vec3>& vertices, const FlatFaces& flat, double tolerance)
       : vertices_(vertices), flat_(flat), tolerance_(tolerance) {
-    // Faces in one plane are one half-space.
+    // Faces in one plane share one half-space.
     for (const FlatFace& face : flat.faces) {
       const auto same = std::find_if(planes_.begin(), planes_.end(), [&](const Plane& plane) {
         return glm::dot(plane.normal, face.normal) > 1.0 - 1e-12 &&
@@ -74,7 +74,7 @@ class TreeBuilder {
     }
   }
 
-  /// Null if there is none.
+  /// Null if there is no such tree.
   FieldPtr build() {
     std::vector<std::uint32_t> all(flat_.faces.size());
     std::iota(all.begin(), all.end(), 0U);
@@ -88,7 +88,7 @@ class TreeBuilder {
     FieldPtr half_space;
   };
 
-  /// Level 0, 2, ... give a solid, the others what is outside of a pocket.
+  /// Levels 0, 2, ... give a solid; the others give the outside of a pocket.
   FieldPtr build(const std::vector<std::uint32_t>& faces, int level) {
     if (level > kDeepest) return nullptr;
     std::vector<std::uint32_t> points;
@@ -127,7 +127,7 @@ class TreeBuilder {
     return level % 2 == 0 ? intersect(std::move(operands)) : unite(std::move(operands));
   }
 
-  /// Faces that hang together across edges that are not edges of the hull of `points`.
+  /// Groups of faces connected across edges that are not edges of the hull of `points`.
   std::vector<std::vector<std::uint32_t>> pocketsOf(const std::vector<std::uint32_t>& faces,
                                                     const std::vector<std::uint32_t>& points) {
     std::map<std::uint32_t, std::uint32_t> parent;
@@ -148,8 +148,8 @@ class TreeBuilder {
     return list;
   }
 
-  /// Whether a plane through the edge has all points on one side: seen along it, they leave half a
-  /// turn free.
+  /// Whether some plane through the edge has all points on one side: seen along the edge, the
+  /// points leave half a turn free.
   [[nodiscard]] bool isOnHull(const FlatEdge& edge,
                               const std::vector<std::uint32_t>& points) const {
     const Vec3& base = vertices_[edge.from];
@@ -177,10 +177,10 @@ class TreeBuilder {
   const FlatFaces& flat_;
   double tolerance_;
   std::vector<Plane> planes_;
-  std::vector<std::size_t> plane_of_;  ///< of each face
+  std::vector<std::size_t> plane_of_;  ///< number of the half-space of each face
 };
 
-/// Of a closed mesh: whether its winding number is not 0.
+/// Whether a point is in a closed mesh: its winding number is not 0.
 bool isInside(const std::vector<Vec3>& vertices,
               const std::vector<std::array<std::uint32_t, 3>>& triangles, const Vec3& p) {
   double turns = 0.0;
@@ -198,7 +198,7 @@ bool isInside(const std::vector<Vec3>& vertices,
   return std::abs(turns) > std::numbers::pi;
 }
 
-/// Whether a tree has the solid's inside: beside its triangles, and anywhere in its box.
+/// Whether a tree has the same inside as the mesh: beside the triangles, and anywhere in its box.
 bool agrees(const Field& tree, const std::vector<Vec3>& vertices,
             const std::vector<std::array<std::uint32_t, 3>>& triangles, const Box3& box,
             double tolerance) {
@@ -229,14 +229,14 @@ bool agrees(const Field& tree, const std::vector<Vec3>& vertices,
   return true;
 }
 
-/// Whether some triangles tell already that there are too many faces, before the whole mesh is
-/// looked at.
+/// Whether a few triangles already show that there are too many faces, before the whole mesh is
+/// examined.
 bool hasManyFaces(const Mesh& mesh, std::size_t most_faces) {
   std::vector<Vec3> normals;
   const std::size_t step = 1 + mesh.triangles.size() / (8 * most_faces + 8);
   for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
     for (const std::uint32_t v : mesh.triangles[t]) {
-      if (v >= mesh.vertices.size()) return false;  // makeSolid() says it
+      if (v >= mesh.vertices.size()) return false;  // makeSolid() reports it
     }
     const auto& [i, j, k] = mesh.triangles[t];
     const Vec3 normal =
@@ -268,8 +268,8 @@ FieldPtr polyhedronField(const Mesh& mesh, std::size_t most_faces) {
   Box3 box;
   for (const SolidPart& part : solid.parts) box = box.unitedWith(part.box);
   const Vec3 lengths = box.size();
-  // What a grid of it would have for voxels, so that whoever bakes it finer or coarser has a
-  // measure.
+  // The feature size: the voxel size that a grid of it would typically have, as a measure for
+  // baking.
   const double feature = std::max({lengths.x, lengths.y, lengths.z}) / 128.0;
   std::size_t left = most_faces;
   for (std::uint32_t part = 0; part < solid.parts.size(); ++part) {

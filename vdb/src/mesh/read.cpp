@@ -20,8 +20,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Assimp drops faces whose indices are out of range and tells only its log, which is one for the
-/// process.
+/// Assimp drops faces whose indices are out of range and only writes that to its log, of which
+/// there is one for the process.
 class DroppedFaces final : public Assimp::LogStream {
  public:
   DroppedFaces() : lock_(mutex()), created_(Assimp::DefaultLogger::isNullLogger()) {
@@ -53,7 +53,7 @@ class DroppedFaces final : public Assimp::LogStream {
   bool seen_ = false;
 };
 
-/// Collects the meshes of a scene graph, each under the transforms above it.
+/// Collects the meshes of a scene graph, each with the transforms above it applied.
 class Collector {
  public:
   Collector(const aiScene& scene, const std::string& path, MeshBuilder& builder)
@@ -175,8 +175,8 @@ std::string readBytes(const std::string& path) {
 
 namespace {
 
-// STL, OBJ and PLY are read by our own code: of files that were cut short Assimp 5.2.5 takes some
-// for whole and crashes on others, and it cannot say which line is wrong.
+// STL, OBJ and PLY are read by our own code: Assimp 5.2.5 accepts some files that were cut short,
+// crashes on others, and cannot say which line is wrong.
 Mesh readAsItIs(const std::string& path, double meters_per_unit) {
   const std::string extension = extensionOf(path);
   if (extension == ".stl") return readStl(path, meters_per_unit);

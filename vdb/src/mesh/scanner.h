@@ -1,5 +1,5 @@
 #pragma once
-/// Words and numbers of a text, with the line they are on, and numbers of binary data between them.
+/// Reads words and numbers of a text, with their line numbers, and binary numbers between them.
 
 #include <algorithm>
 #include <charconv>
@@ -24,7 +24,7 @@ struct Scanner {
     while (at < text.size() && isBlank(text[at])) line += text[at++] == '\n' ? 1 : 0;
   }
 
-  /// The next word, whatever line it is on; empty at the end.
+  /// The next word, on this or a later line; empty at the end.
   std::string_view word() noexcept {
     skipBlanks();
     return take();
@@ -36,7 +36,7 @@ struct Scanner {
     return at < text.size() && text[at] == '\n' ? std::string_view() : take();
   }
 
-  /// The next number of binary data; nothing if they end before it does.
+  /// The next binary number; nothing if the data end before it is complete.
   std::optional<double> number(Scalar kind, bool is_swapped) noexcept {
     return withKind(kind, [&](auto value) -> std::optional<double> {
       if (text.size() - at < sizeof value) return {};
@@ -49,7 +49,7 @@ struct Scanner {
     });
   }
 
-  /// To the end of this line.
+  /// Skips to the end of this line.
   void skipLine() noexcept {
     while (at < text.size() && text[at] != '\n') ++at;
   }
@@ -62,7 +62,7 @@ struct Scanner {
   }
 };
 
-/// The whole word as a number; infinite if it is too large; nothing if it is none.
+/// The whole word as a number; infinite if it is too large; nothing if it is not a number.
 inline std::optional<double> numberOf(std::string_view word) noexcept {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;

@@ -14,25 +14,28 @@
 namespace palpate::vdb {
 namespace {
 
-/// [voxels] As near to a sharp edge the triangles answer; a grid's spline reaches 4.9 voxels and is
-/// at full accuracy beyond four of an edge. Over the next voxel they hand over.
+/// [voxels] Up to this distance from a sharp edge the triangles answer. A grid's spline has full
+/// accuracy farther than four voxels from an edge. Over the next voxel the triangles' answer blends
+/// into the grid's.
 constexpr double kExact = 4.0;
 constexpr double kReach = 5.0;
-/// [voxels] The grid rounds an edge off by less: what is farther from its surface is none of it.
+/// [voxels] A grid rounds an edge off by less than this: a triangle farther from the grid's surface
+/// is not part of the surface.
 constexpr double kMostRounding = 2.0;
-/// [voxels] The same farther than kMostRounding from every sharp edge, where the grid is far more
-/// exact than that.
+/// [voxels] The same for places farther than kMostRounding from every sharp edge, where the grid is
+/// far more accurate.
 constexpr double kMostOff = 0.5;
 
-/// [voxels] Nearer to an edge or corner than that nothing is said to bend.
+/// [voxels] Nearer to an edge or corner than this, the Hessian is taken as 0.
 constexpr double kCreep = 0.1;
 
 struct Surface {
   std::vector<Vec3> vertices;
   std::vector<MeshTriangle> triangles;
-  std::vector<Vec3> normals;                      ///< of triangles
-  std::vector<std::array<Vec3, 3>> side_normals;  ///< of triangles: the mean of both at each side
-  std::vector<Vec3> corner_normals;               ///< of vertices: weighted by angle
+  std::vector<Vec3> normals;  ///< for each triangle
+  /// For each triangle: at each side the mean normal of both triangles
+  std::vector<std::array<Vec3, 3>> side_normals;
+  std::vector<Vec3> corner_normals;  ///< for each vertex: weighted by angle
   std::vector<std::array<std::uint32_t, 2>> sharp;
 };
 
@@ -70,14 +73,14 @@ class SharpEdges final : public Field {
     return smooth;
   }
 
-  /// Tells of places [m] on triangles, where triangles answer, that are not on the surface of the
-  /// solid: on walls within it.
+  /// Calls tell() with places [m] on triangles, within the range where triangles answer, that are
+  /// not on the surface of the solid but on walls inside it.
   template <typename Tell>
   void forInnerWalls(const Tell& tell) const {
     for (const MeshTriangle& t : surface_.triangles) {
       pollStop();
-      // In rows along the longest side, so that a needle takes no more places than its length asks
-      // for.
+      // In rows along the longest side, so that the number of places for a needle depends only on
+      // its length.
       std::size_t apex = 0;
       for (std::size_t n = 1; n < 3; ++n) {
         if (glm::length(sideOpposite(t, n)) > glm::length(sideOpposite(t, apex))) apex = n;
@@ -103,7 +106,7 @@ class SharpEdges final : public Field {
     }
   }
 
-  /// Sharp edges within reach of a place, by number.
+  /// Numbers of the sharp edges within reach of a place.
   template <typename Tell>
   void forEdgesNear(const Vec3& p, const Tell& tell) const {
     for (const std::uint32_t edge : cells_.at(p).edges) {
@@ -121,8 +124,8 @@ class SharpEdges final : public Field {
 
  private:
   struct Share {
-    double weight = 0.0;  ///< of the triangles
-    Vec3 gradient{0.0};   ///< [1/m]
+    double weight = 0.0;  ///< weight of the triangles' answer
+    Vec3 gradient{0.0};   ///< [1/m] gradient of the weight
     std::span<const std::uint32_t> triangles;
   };
   struct Exact {
@@ -131,17 +134,17 @@ class SharpEdges final : public Field {
     Mat3 hessian{0.0};
   };
 
-  /// [m] The side that does not touch that corner, from the next corner to the one after.
+  /// [m] The side opposite to a corner, from the next corner to the one after.
   [[nodiscard]] Vec3 sideOpposite(const MeshTriangle& t, std::size_t corner) const noexcept {
     return surface_.vertices[t[(corner + 2) % 3]] - surface_.vertices[t[(corner + 1) % 3]];
   }
-  /// Steps of a voxel at most.
+  /// The number of steps of at most a voxel that cover this length.
   [[nodiscard]] int stepsOf(double way) const noexcept {
     return std::max(1, static_cast<int>(std::ceil(way / voxel_)));
   }
 
   struct EdgeNear {
-    Vec3 place{0.0};        ///< of a sharp edge, nearest
+    Vec3 place{0.0};        ///< nearest point of a sharp edge
     double distance = 0.0;  ///< [m] kReach if none is nearer
     std::span<const std::uint32_t> triangles;
   };
@@ -166,7 +169,7 @@ class SharpEdges final : public Field {
     const double t = (kReach * voxel_ - edge.distance) / ((kReach - kExact) * voxel_);
     if (t >= 1.0) return {1.0, Vec3(0.0), edge.triangles};
     if (!(t > 0.0)) return {};
-    // 3 t^2 - 2 t^3, and its slope down along the way from the edge.
+    // 3 t^2 - 2 t^3, and its gradient, which points towards the edge.
     return {t * t * (3.0 - 2.0 * t),
             -6.0 * t * (1.0 - t) / ((kReach - kExact) * voxel_) * (p - edge.place) / edge.distance,
             edge.triangles};
@@ -200,9 +203,9 @@ class SharpEdges final : public Field {
       return out;
     }
     out.gradient = sign / distance * way;
-    // By an edge the surface bends all at once. As a slide goes no farther than the normal turns by
-    // half a radian, it would creep over the edge; taken for flat, it goes over it and is pulled
-    // back.
+    // Next to an edge the curvature is extreme. A slide ends where the normal has turned by half a
+    // radian, so that it would only creep over the edge; with zero curvature it crosses the edge
+    // and is projected back.
     if (distance < kCreep * voxel_) return out;
     const double bend = sign / distance;
     out.hessian = (Mat3(1.0) - outer(out.gradient, out.gradient)) * bend;
@@ -228,8 +231,8 @@ double angleAt(const Vec3& corner, const Vec3& b, const Vec3& c) {
   return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
 }
 
-/// Turns each part as the solid has it that was baked (one that is inside out is solid all the
-/// same, one that is turned within another is a cavity), and drops those that are walls within the
+/// Turns each part the way it counts in the baked solid (a part that is inside out is still solid,
+/// a part turned against the one around it is a cavity), and drops parts that are walls inside the
 /// solid. Vertices are in meters.
 void keepSurface(Solid& solid, const Field& baked, double voxel) {
   std::vector<double> outward(solid.parts.size(), 0.0);
@@ -318,7 +321,7 @@ SharpField withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double
                      "sharp edges need a field, an angle from 0 to 180 degrees and a "
                      "voxel size of more than 0");
   }
-  // In voxels, as what is open is judged by them.
+  // In voxels, because makeSolid() judges openings in voxels.
   Solid solid = makeSolid(mesh, voxel, MeshSign::kVote);
   if (!solid.was_closed) {
     throw inputError("mesh.sharp_open",

@@ -17,7 +17,7 @@ Mesh readBinary(const std::string& bytes, const std::string& path, double meters
   for (std::size_t at = kHeaderBytes; at < bytes.size(); at += kTriangleBytes) {
     std::array<std::uint32_t, 3> corners{};
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      float p[3];  // after the normal, which the corners give better
+      float p[3];  // the normal before them is ignored: the corners give it more accurately
       std::memcpy(p, bytes.data() + at + 12 * (corner + 1), sizeof p);
       corners[corner] = builder.addVertex(Vec3(p[0], p[1], p[2]), [&] {
         return "corner " + std::to_string(corner) + " of triangle " +
@@ -75,7 +75,7 @@ class AsciiStl {
       if (word.empty()) refuse("the file ends within a vertex; it was cut short");
       const std::optional<double> value = numberOf(word);
       if (!value) refuse("'" + std::string(word.substr(0, 40)) + "' is not a number");
-      // Coordinates of STL are single precision; what is printed beyond that is noise, which would
+      // Coordinates of STL are single precision; printed digits beyond that are noise, which would
       // keep equal corners from being welded.
       p[axis] = static_cast<double>(static_cast<float>(*value));
     }

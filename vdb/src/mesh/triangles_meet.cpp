@@ -11,7 +11,7 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// An axis along which the triangle is seen with an area, or -1.
+/// An axis along which the triangle projects to an area, or -1.
 int flatAxis(const Corners& t) {
   const Vec3 normal = glm::abs(glm::cross(t[1] - t[0], t[2] - t[0]));
   const int most =
@@ -30,7 +30,7 @@ bool holds(const Corners& t, const Vec3& p, int axis) {
   return (a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0);
 }
 
-/// The point of the side from p to q where what is `from` at p and `to` at q is zero.
+/// The point between p and q where a linear function, `from` at p and `to` at q, is zero.
 Vec3 between(const Vec3& p, const Vec3& q, double from, double to) {
   const double share = std::clamp(from == to ? 0.5 : from / (from - to), 0.0, 1.0);
   return p + share * (q - p);
@@ -42,7 +42,7 @@ bool isBetween(const Vec3& p, const Vec3& q, const Vec3& r) {
          glm::all(glm::lessThanEqual(r, glm::max(p, q)));
 }
 
-/// Where two sides in one plane meet, seen along `axis`.
+/// Where two sides in one plane meet, as seen along `axis`.
 std::optional<Vec3> sidesMeet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                               int axis) {
   const int pa = sideOfLine(p, q, a, axis);
@@ -84,7 +84,7 @@ std::optional<Vec3> sideMeets(const Vec3& p, const Vec3& q, const Corners& t, in
   return between(p, q, glm::dot(normal, p - t[0]), glm::dot(normal, q - t[0]));
 }
 
-/// Turned so that what both triangles have comes first.
+/// Permutes both so that shared corners come first; returns how many there are.
 std::size_t putSharedFirst(std::array<std::uint32_t, 3>& one, std::array<std::uint32_t, 3>& other) {
   std::size_t shared = 0;
   for (std::size_t n = 0; n < 3; ++n) {
@@ -113,7 +113,8 @@ std::optional<Vec3> trianglesMeet(const std::vector<Vec3>& vertices,
   const int t_axis = flatAxis(t);
   if (s_axis < 0 || t_axis < 0) return {};
   if (shared == 2) {
-    // Their planes meet along the side, or are one; then they must lie on both sides of it.
+    // Either their planes meet only along the shared side, or both lie in one plane; then they
+    // overlap only if they are on the same side of it.
     if (sideOfPlane(s[0], s[1], s[2], t[2]) != 0 ||
         sideOfLine(s[0], s[1], s[2], s_axis) != sideOfLine(s[0], s[1], t[2], s_axis)) {
       return {};
@@ -121,7 +122,8 @@ std::optional<Vec3> trianglesMeet(const std::vector<Vec3>& vertices,
     return 0.5 * (s[0] + s[1]);
   }
   if (shared == 1) {
-    // From the shared corner, what is common ends at the far side of one of them.
+    // The common segment begins at the shared corner, and ends at the far side of one of the
+    // triangles.
     if (const auto at = sideMeets(s[1], s[2], t, t_axis)) return at;
     return sideMeets(t[1], t[2], s, s_axis);
   }
@@ -131,7 +133,7 @@ std::optional<Vec3> trianglesMeet(const std::vector<Vec3>& vertices,
            first == sideOfPlane(a[0], a[1], a[2], b[2]);
   };
   if (apart(s, t) || apart(t, s)) return {};
-  // What is common is a stretch between two of these places, or one of them.
+  // The common part is a segment between two of these places, or a single one of them.
   Vec3 sum(0.0);
   double count = 0.0;
   for (std::size_t n = 0; n < 3; ++n) {

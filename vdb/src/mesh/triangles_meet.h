@@ -1,6 +1,5 @@
 #pragma once
-/// Whether two triangles of a mesh have points in common beyond the corners and the side they
-/// share.
+/// Whether two triangles of a mesh have points in common beyond shared corners and sides.
 
 #include <array>
 #include <cstdint>
@@ -11,8 +10,8 @@
 
 namespace palpate::vdb {
 
-/// Exact for the doubles as they are; touching counts. Triangles with the same three corners, and
-/// those with all corners in one line, never meet. Gives a place of what is common, to rounding.
+/// Exact for the doubles as given; touching counts. Triangles with the same three corners, and
+/// those with all corners in one line, never meet. Returns a common point, up to rounding.
 [[nodiscard]] std::optional<Vec3> trianglesMeet(const std::vector<Vec3>& vertices,
                                                 const std::array<std::uint32_t, 3>& one,
                                                 const std::array<std::uint32_t, 3>& other);

@@ -31,7 +31,7 @@ class Vtk {
     readHeader();
     for (;;) {
       const std::string word(nextKeyword());
-      // What belongs to points and cells comes last.
+      // Data of points and cells come last.
       if (word.empty() || word == "POINT_DATA" || word == "CELL_DATA") break;
       if (word == "POINTS") {
         readPoints();
@@ -56,7 +56,7 @@ class Vtk {
   using Cell = std::vector<long long>;
 
   [[noreturn]] void refuse(const std::string& what, const char* code = "mesh.unreadable") const {
-    // Lines have no meaning once binary data came.
+    // Line numbers have no meaning once binary data were read.
     throw Error(ErrorKind::kInput,
                 {code, what, "export the mesh again", path_, is_text_ ? input_.line : 0});
   }
@@ -105,7 +105,7 @@ class Vtk {
     const std::optional<double> value = numberOf(word);
     if (!value || !(*value >= 0.0) || *value != std::floor(*value) ||
         *value > static_cast<double>(input_.text.size())) {
-      // Each number takes a byte at least.
+      // Each number takes at least one byte.
       if (value && *value > static_cast<double>(input_.text.size())) refuseEnd();
       refuse("'" + word.substr(0, 40) + "' is not a count");
     }
@@ -119,7 +119,7 @@ class Vtk {
     return *scalar;
   }
 
-  /// Binary data begin behind the line that announces them.
+  /// Binary data begin after the line that announces them.
   void beginData() {
     if (binary_) takeLine();
   }
@@ -185,7 +185,7 @@ class Vtk {
     return out;
   }
 
-  /// As files of version 5 have them: where each cell begins, then all corners.
+  /// The format of version 5: where each cell begins, then all corners.
   std::vector<Cell> readOffsets(std::size_t offsets, std::size_t corners) {
     const auto numbers = [&](std::string_view name, std::size_t count) {
       if (takeWord() != name) refuse("no " + std::string(name) + " in a list of cells");
@@ -231,7 +231,7 @@ class Vtk {
     }
   }
 
-  /// To the empty line that ends it.
+  /// Skips to the empty line that ends it.
   void skipMetadata() {
     takeLine();
     while (input_.at < input_.text.size() && !takeLine().empty()) {
@@ -256,8 +256,8 @@ class Vtk {
   MeshBuilder builder_;
   double version_ = 0.0;
   bool binary_ = false;
-  bool is_text_ = true;                ///< the header always is
-  std::vector<std::uint32_t> points_;  ///< number in the file -> welded vertex
+  bool is_text_ = true;                ///< the header is always text
+  std::vector<std::uint32_t> points_;  ///< number in the file -> number of the welded vertex
   std::size_t cells_ = 0;
 };
 

@@ -13,15 +13,15 @@
 namespace palpate::vdb {
 namespace {
 
-/// A voxel center may lie on the surface; in a part one voxel thin, and beside it, it must not,
-/// lest the part vanish or swell.
+/// A voxel center may lie on the surface, except in a part one voxel thin and beside it: there the
+/// part would vanish or swell.
 constexpr double kHold = 0.3;
 constexpr double kBeside = 1.8;  ///< voxels that share a corner
-/// Voxels by which the surface may be nearer than the nearest voxel of the other side: a smooth one
-/// by about one; and no less, or curved ones would be bent. Of voxels that are not cubes, those as
-/// long as their diagonal.
+/// By how many voxels the surface may be nearer than the nearest voxel of the other side: about one
+/// for a smooth surface. A smaller value would bend curved surfaces. For voxels that are not cubes,
+/// the unit is their diagonal.
 constexpr double kSlack = 1.3;
-/// Where the surface is between two voxels, at first.
+/// Where the surface between two voxels is at first.
 constexpr double kHalf = 0.5;
 
 struct Offset {
@@ -69,8 +69,8 @@ class Finder {
         }
       }
     }
-    // Ties are broken by the length in voxels, so that an offset and its opposite, which the other
-    // side sees, mean the same.
+    // Ties are broken by the length in voxels, so that an offset and its opposite, as seen from the
+    // other side, sort alike.
     std::stable_sort(offsets_.begin(), offsets_.end(), [](const Offset& a, const Offset& b) {
       return a.distance != b.distance ? a.distance < b.distance : a.steps < b.steps;
     });
@@ -90,7 +90,7 @@ class Finder {
     return static_cast<std::size_t>(place);
   }
 
-  /// Blocks with a voxel beside the surface, and those around them.
+  /// Makes the blocks with a voxel beside the surface, and those around them.
   void makeBlocks() {
     std::vector<std::uint8_t> near(tableAt(0, 0, band_.table_size[2]));
     const auto [sx, sy, sz] = mask_.strides();
@@ -99,7 +99,8 @@ class Finder {
       for (int j = 0; j < ny; ++j) {
         std::ptrdiff_t n = mask_.at(0, j, k);
         for (int i = 0; i < nx; ++i, ++n) {
-          // Of each pair the inside one is enough: the other is in the same block or the next.
+          // It is enough to look at the inside voxel of each pair: the outside one is in the same
+          // block or the next.
           if (!inside(n) || (inside(n - sx) && inside(n + sx) && inside(n - sy) && inside(n + sy) &&
                              inside(n - sz) && inside(n + sz))) {
             continue;
@@ -108,7 +109,7 @@ class Finder {
         }
       }
     }
-    // Not bound as one: clang 14 captures no structured bindings.
+    // Not one structured binding, because clang 14 lambdas cannot capture it.
     const int tx = band_.table_size[0];
     const int ty = band_.table_size[1];
     const int tz = band_.table_size[2];
@@ -154,8 +155,8 @@ class Finder {
 
   /// The nearest voxel on the other side, if it is within reach.
   struct Other {
-    double steps = kInfinity;     ///< away, in voxels
-    double distance = kInfinity;  ///< in steps of the smallest spacing
+    double steps = kInfinity;     ///< [voxels] length of the step to it
+    double distance = kInfinity;  ///< [steps of the smallest spacing] distance to it
   };
 
   [[nodiscard]] Other otherOf(const Opposite::Found& found,
@@ -167,7 +168,7 @@ class Finder {
     if (voxels <= Band::kReach * Band::kReach) {
       return {std::sqrt(voxels), std::sqrt(static_cast<double>(found.square[place]))};
     }
-    // Where spacings differ, one that is further away may be fewer voxels away.
+    // With unequal spacings, a voxel that is farther away may be fewer voxels away.
     return is_cubic_ ? Other{} : otherWithinReach(at);
   }
 
@@ -209,7 +210,7 @@ class Finder {
     for (const Offset& offset : offsets_) {
       const std::array<int, 3> there = {at[0] + offset.step[0], at[1] + offset.step[1],
                                         at[2] + offset.step[2]};
-      // What lies beyond the image is unknown, and no outside.
+      // Beyond the image nothing is known; it does not count as outside.
       if (isIn(mask_, there) && inside(mask_.at(there[0], there[1], there[2])) != side) {
         return {offset.steps, offset.distance};
       }
@@ -217,8 +218,8 @@ class Finder {
     return {};
   }
 
-  /// To the image's border, if that is within reach. An inside voxel near the box's border is near
-  /// the image's: masks have a margin.
+  /// Distance to the image's border, if that is within reach. An inside voxel near the box's border
+  /// is near the image's border: masks have a margin elsewhere.
   [[nodiscard]] double borderDistance(const std::array<int, 3>& at) const noexcept {
     double nearest = kInfinity;
     for (int axis = 0; axis < 3; ++axis) {

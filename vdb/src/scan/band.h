@@ -1,5 +1,5 @@
 #pragma once
-/// The voxels around the surface of a mask, in blocks, and what is known of the distance there.
+/// The voxels around the surface of a mask, in blocks, and the bounds of their distances.
 
 #include <array>
 #include <cstdint>
@@ -18,18 +18,18 @@ struct BandBlock {
   using Values = std::array<float, kVoxels>;
 
   alignas(32) Values value;             ///< NaN: not in the band
-  std::uint64_t rows = 0;               ///< bit 8 i + j: the row has a voxel of the band
+  std::uint64_t rows = 0;               ///< bit 8 i + j: the row has a voxel in the band
   std::array<int, 3> first{};           ///< box index of its first voxel, a multiple of 8
   std::array<std::int32_t, 27> near{};  ///< blocks around it, 9 di + 3 dj + dk from -1 on; -1: none
 };
 
-/// What the values of a block may be.
+/// Bounds of the values of a block.
 struct BlockBounds {
   alignas(32) BandBlock::Values lower;
   alignas(32) BandBlock::Values upper;
 };
 
-/// All lengths are in steps of the smallest spacing. The band holds the voxels with another one on
+/// All lengths are in steps of the smallest spacing. The band holds every voxel that has a voxel of
 /// the other side within kReach voxels, and inside voxels that near to the image's border.
 struct Band {
   static constexpr int kReach = 5;
@@ -37,11 +37,11 @@ struct Band {
   std::array<int, 3> first{};       ///< as in Mask
   std::array<int, 3> box{};         ///< as in Mask
   std::array<int, 3> table_size{};  ///< blocks along each axis
-  std::vector<std::int32_t> table;  ///< place of each block in `blocks`, or -1; first axis fastest
+  std::vector<std::int32_t> table;  ///< index of each block in `blocks`, or -1; first axis fastest
   HugeVector<BandBlock> blocks;
   HugeVector<BlockBounds> bounds;  ///< one for each block
 
-  /// Gives their memory back: `bounds = {}` would keep it.
+  /// Frees their memory: `bounds = {}` would keep it.
   void dropBounds() noexcept { bounds = HugeVector<BlockBounds>(); }
   /// The block of voxel (i, j, k), or -1.
   [[nodiscard]] std::int32_t blockAt(int i, int j, int k) const noexcept {
@@ -56,10 +56,10 @@ struct Band {
   }
 };
 
-/// How far each voxel center may be from the surface, by the mask alone. Where the nearest voxel of
-/// the other side is d away, the surface is at most d away, and hardly nearer than the last voxel
-/// of the own side on the way there. Parts one voxel thin are held open. `spacing` of the voxels
-/// along each axis, in units of the smallest.
+/// How far each voxel center may be from the surface, judging by the mask alone. If the nearest
+/// voxel of the other side is d away, the surface is at most d away, and hardly nearer than the
+/// last voxel of the own side on the way there. Parts one voxel thin are held open. `spacing`: of
+/// the voxels along each axis, in units of the smallest.
 [[nodiscard]] Band bandOf(const Mask& mask, const Vec3& spacing);
 
 }  // namespace palpate::vdb

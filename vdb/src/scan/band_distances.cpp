@@ -15,11 +15,12 @@
 namespace palpate::vdb {
 namespace {
 
-/// A distance that leads further away from what was is another place's.
+/// [steps] A distance that differs more than this from the old value belongs to another place of
+/// the surface.
 constexpr double kSamePlace = 0.75;
-constexpr double kBySurface = 1.2;  ///< [steps] of value, where the search begins
+constexpr double kBySurface = 1.2;  ///< [steps] voxels with a smaller |value| begin the search
 
-/// What a voxel found.
+/// The result of one voxel's search.
 struct Taken {
   std::size_t place = 0;
   Vec3 foot{0.0, 0.0, 0.0};
@@ -87,7 +88,7 @@ class Distances {
     return !std::isnan(band_.blocks[b].value[place]) && !feet_[b].has(place);
   }
 
-  /// For the closest point from `start` [steps from the voxel] on.
+  /// Searches the closest point, starting from `start` [steps from the voxel].
   void look(std::size_t b, std::size_t place, const Vec3& start) {
     const BandBlock& block = band_.blocks[b];
     const auto n = static_cast<int>(place);
@@ -107,7 +108,7 @@ class Distances {
                                     bounds.lower[place], bounds.upper[place])});
   }
 
-  /// When all have looked, so that none sees what others found in the same round.
+  /// Applied when all voxels have searched, so that none uses results of the same round.
   void takeAll() {
     forBlocks(feet_.size(), [&](std::size_t b) {
       for (const Taken& taken : taken_[b]) {
@@ -118,7 +119,7 @@ class Distances {
     });
   }
 
-  /// By the voxels around, one-sided at the band's edge.
+  /// Gradient from the neighboring voxels, one-sided at the band's edge.
   [[nodiscard]] static Vec3 slopeAt(const float* c) noexcept {
     Vec3 slope(0.0);
     for (int a = 0; a < 3; ++a) {
@@ -135,9 +136,9 @@ class Distances {
 
   Band& band_;
   Mat3 axes_;
-  LatticeSpline spline_;  ///< through the values as they were
+  LatticeSpline spline_;  ///< through the old values
   HugeVector<Feet> feet_;
-  std::vector<std::vector<Taken>> taken_;  ///< in this round, for each block
+  std::vector<std::vector<Taken>> taken_;  ///< results of this round, for each block
 };
 
 }  // namespace

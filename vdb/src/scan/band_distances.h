@@ -1,14 +1,15 @@
 #pragma once
-/// Values of a band made distances again.
+/// Turns the values of a band into distances again.
 
 #include "scan/band.h"
 
 namespace palpate::vdb {
 
-/// Each voxel takes its distance to the surface that the values have now, within its bounds. Those
-/// by the surface find its closest point along their slope, the others from those of their
-/// neighbors, layer by layer. One whose distance would be of another place keeps its value. `axes`:
-/// columns, in steps of the smallest spacing. Does not depend on the number of threads.
+/// Each voxel takes its distance to the surface of the present values, within its bounds. Voxels
+/// next to the surface find its closest point along their gradient, the others start from the
+/// closest points of their neighbors, layer by layer. A voxel whose new distance would belong to
+/// another place keeps its value. `axes`: columns, in steps of the smallest spacing. The result
+/// does not depend on the number of threads.
 void makeDistances(Band& band, const Mask& mask, const Mat3& axes);
 
 }  // namespace palpate::vdb

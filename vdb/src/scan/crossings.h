@@ -1,5 +1,5 @@
 #pragma once
-/// Where the surface of a mask passes between two voxels.
+/// Finds where the surface of a mask passes between two voxels.
 
 #include <array>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 namespace palpate::vdb {
 
-/// visit(voxel, axis, side, value inside, value outside) for each inside voxel of a block with a
-/// neighbor outside: box indices, and the neighbor is `side` (-1 or 1) away along `axis`. Outside
-/// is NaN beyond the image's border.
+/// Calls visit(voxel, axis, side, value inside, value outside) for each inside voxel of a block
+/// with an outside neighbor: `voxel` is a box index, and the neighbor is `side` (-1 or 1) away
+/// along `axis`. Beyond the image's border the value outside is NaN.
 template <typename Visit>
 void forCrossings(const Band& band, const Mask& mask, const BandBlock& block, const Visit& visit) {
   const auto strides = mask.strides();

@@ -17,10 +17,11 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 
 constexpr int kFits = 2;
 constexpr double kFitWidth =
-    4.2;  ///< [voxels] of a band that a cubic spline can read at the surface
-constexpr double kFitReach = 1.5;   ///< [voxels] from the surface
-constexpr double kMostFit = 0.3;    ///< [voxels] more is a part that the voxels do not hold
-constexpr double kLeastFit = 2e-3;  ///< [voxels] less is not felt
+    4.2;  ///< [voxels] least half width of a band that a cubic spline can read at the surface
+constexpr double kFitReach = 1.5;  ///< [voxels] from the surface
+/// [voxels] A larger error means a part that the voxels do not hold
+constexpr double kMostFit = 0.3;
+constexpr double kLeastFit = 2e-3;  ///< [voxels] a smaller error is not felt
 
 void fitOnce(const openvdb::FloatGrid::Ptr& grid, const DistanceLeaves& leaves,
              const BakePlan& plan, const BakeOptions& options) {

@@ -35,7 +35,7 @@ std::vector<std::uint64_t> keysAround(const std::vector<Vec3>& points, double re
   constexpr std::size_t kMostDoubles = 4'000'000;
   std::vector<std::uint64_t> keys;
   std::uint64_t last = 0;
-  // Points of one lattice voxel after another: most ask for the leaves that the one before did.
+  // Points come lattice voxel by lattice voxel: most ask for the same leaves as the one before.
   for (const Vec3& p : points) {
     const Coord lo(down(p.x - reach), down(p.y - reach), down(p.z - reach));
     const Coord hi(down(p.x + reach), down(p.y + reach), down(p.z + reach));
@@ -79,7 +79,7 @@ std::int32_t DistanceLeaves::indexAt(const Coord& voxel) const noexcept {
 VoxelBits DistanceLeaves::besideKnown(const DistanceLeaf& leaf) const noexcept {
   // Rows of ten bits (z from -1 to 8), in slabs of ten rows.
   std::array<std::array<std::uint32_t, 10>, 10> rows{};
-  // The first row and slab are the last of the leaf before.
+  // The first row and slab are the last ones of the leaf before.
   const auto side = [](std::size_t n) -> std::size_t { return n == 0 ? 0 : n == 9 ? 2 : 1; };
   for (std::size_t x = 0; x < 10; ++x) {
     for (std::size_t y = 0; y < 10; ++y) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Distances of a grid's voxels while they are found, leaf by leaf.
+/// Distances of a grid's voxels while they are computed, leaf by leaf.
 
 #include <openvdb/openvdb.h>
 
@@ -33,9 +33,9 @@ struct DistanceLeaf {
 
   openvdb::Coord origin;
   std::array<std::int32_t, 27> near{};  ///< leaves around it, 9 dx + 3 dy + dz from -1 on; -1: none
-  VoxelBits known{};                    ///< voxels whose neighbors may start from their point
+  VoxelBits known{};  ///< voxels whose closest point their neighbors may start from
   VoxelBits inside{};
-  Feet feet;                            ///< of the known ones
+  Feet feet;                            ///< of the known voxels
   std::array<float, kVoxels> distance;  ///< kNowhere: not found
 
   /// [voxels]
@@ -45,8 +45,8 @@ struct DistanceLeaf {
   }
 };
 
-/// All leaves with a voxel within `reach` along each axis of one of the points [voxels], in a fixed
-/// order.
+/// All leaves that have a voxel within `reach`, along each axis, of one of the points [voxels], in
+/// a fixed order.
 class DistanceLeaves {
  public:
   DistanceLeaves(const std::vector<Vec3>& points, double reach);
@@ -54,10 +54,10 @@ class DistanceLeaves {
   [[nodiscard]] HugeVector<DistanceLeaf>& all() noexcept { return leaves_; }
   [[nodiscard]] const HugeVector<DistanceLeaf>& all() const noexcept { return leaves_; }
 
-  /// The place of the leaf with that voxel, or -1.
+  /// The index of the leaf with that voxel, or -1.
   [[nodiscard]] std::int32_t indexAt(const openvdb::Coord& voxel) const noexcept;
 
-  /// Voxels of a leaf next to known ones, by faces, edges or corners.
+  /// Voxels of a leaf next to known ones, across faces, edges or corners.
   [[nodiscard]] VoxelBits besideKnown(const DistanceLeaf& leaf) const noexcept;
 
   /// The feet of a leaf and of those around it.

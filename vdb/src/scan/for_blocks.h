@@ -1,5 +1,5 @@
 #pragma once
-/// Work on all blocks of a band, in parallel.
+/// Runs work on all blocks of a band, in parallel.
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,5 +1,5 @@
 #pragma once
-/// A block of a band with what lies around it, for the loops of relax.h.
+/// Gathers a block of a band with its surroundings, for the loops of relax.h.
 
 #include <array>
 #include <cstring>
@@ -10,7 +10,8 @@
 
 namespace palpate::vdb {
 
-/// Block and what the stencils reach of its neighbors; of(b) tells the values of block b.
+/// Copies the block, and the parts of its neighbors that the stencils reach; of(b) returns the
+/// values of block b.
 template <typename Of>
 void gather(const BandBlock& block, const Of& of, Patch& patch) noexcept {
   alignas(32) static constexpr BandBlock::Values kNoBlock = [] {
@@ -34,7 +35,7 @@ void gather(const BandBlock& block, const Of& of, Patch& patch) noexcept {
   };
   constexpr std::integral_constant<int, 8> kRow;
   constexpr std::integral_constant<int, Patch::kHalo> kEnd;
-  // Rows of the block, and of those across its faces; the nearer ones with their ends.
+  // Rows of the block, and of the blocks across its faces; nearer ones include their ends.
   const auto columns = [&](int dx, int dy, int x0, int x1, int y0, int y1, bool with_ends) {
     const float* const here = source(dx, dy, 0);
     const float* const before = source(dx, dy, -1);

@@ -21,7 +21,7 @@ bool touch(const Mask& a, const Mask& b) {
   return true;
 }
 
-/// Whether both bands hold a voxel: their layers are near each other somewhere.
+/// Whether both bands hold a common voxel: then their layers are near each other somewhere.
 bool haveCommonVoxel(const Band& a, const Band& b) {
   for (const BandBlock& block : a.blocks) {
     for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
@@ -36,18 +36,18 @@ bool haveCommonVoxel(const Band& a, const Band& b) {
   return false;
 }
 
-/// [steps] How far a lapped layer reaches into its neighbors, for each step of the longest spacing:
-/// more than the grids of two layers differ at their wall, and at most half a step. More of it
-/// would blur that wall near edges.
+/// [steps] How far a lapped layer reaches into its neighbors, per step of the longest spacing: more
+/// than the grids of two layers differ at their wall, and at most half a step. A larger lap would
+/// blur that wall near edges.
 constexpr double kLap = 0.2;
 constexpr double kMostLap = 0.5;
-/// [steps] How deep below the skin of all layers the outer wall of a lapped layer may lie where it
-/// meets another.
+/// [steps] How far the outer wall of a lapped layer may lie inside the outer surface of all layers,
+/// where it meets another layer.
 constexpr float kMostGroove = 0.5F;
 
-/// Whether a voxel of one has one of the other beside it, across a face, an edge or a corner.
+/// Whether a voxel of `a` has one of `b` beside it, across a face, an edge or a corner.
 bool meet(const Mask& a, const Mask& b) {
-  std::array<int, 3> lo{}, hi{};  // of a's voxels that may have one of b's beside them
+  std::array<int, 3> lo{}, hi{};  // range of a's voxels that may have one of b's beside them
   for (std::size_t axis = 0; axis < 3; ++axis) {
     lo[axis] = std::max(a.first[axis], b.first[axis] - 1);
     hi[axis] = std::min(a.first[axis] + a.box[axis], b.first[axis] + b.box[axis] + 1);
@@ -65,8 +65,9 @@ bool meet(const Mask& a, const Mask& b) {
   return false;
 }
 
-/// Of a layer that has `own`, the smallest of its neighbors `least` (NaN: none near), all layers
-/// together `united` (NaN: deep within them).
+/// A layer's share of the space. `own`: the layer's value; `least`: the smallest value of its
+/// neighbors (NaN: none is near); `united`: the value of all layers together (NaN: deep within
+/// them).
 float shared(float own, float least, float united) {
   const float other = std::fmin(least, -united);
   return std::isnan(other) ? own : 0.5F * (own - other);
@@ -79,7 +80,7 @@ float lapped(float own, float least, float united, float lap) {
   return std::max(std::min(0.5F * (own + united), united + kMostGroove), wall);
 }
 
-/// [m] Of a voxel.
+/// [m] Edge lengths of a voxel.
 Vec3 lengthsOf(const Image& image) {
   return {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])};
 }
@@ -94,7 +95,7 @@ bool haveCommonLabel(const std::vector<int>& a, const std::vector<int>& b) {
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
-/// visit(voxel's place in its block, box index) for each voxel of the band in a block.
+/// Calls visit(index in the block, box index) for each voxel of a block that is in the band.
 template <typename Visit>
 void forVoxels(const BandBlock& block, const Visit& visit) {
   for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
@@ -105,7 +106,7 @@ void forVoxels(const BandBlock& block, const Visit& visit) {
   }
 }
 
-/// On the side of the mask.
+/// The value, forced to the mask's side.
 float onSide(float value, bool inside) {
   return inside ? std::min(value, -kLeastValue) : std::max(value, kLeastValue);
 }
@@ -175,7 +176,8 @@ float LabelPartition::Limits::leastAt(int x, int y, int z) const noexcept {
 LabelPartition::Limits LabelPartition::limitsOf(std::size_t index,
                                                 const std::vector<std::size_t>& neighbors,
                                                 const Progress& progress) {
-  // What has labels in common with the layer is not part of the rest, unless something else is.
+  // Layers that share labels with this one are not part of the rest, except by labels of other
+  // layers.
   Labels labels = layers_[index];
   for (const Labels& other : layers_) {
     if (!haveCommonLabel(other, layers_[index])) labels = together(labels, other);
@@ -195,9 +197,9 @@ float LabelPartition::shiftOf(std::size_t index, const Progress& progress) {
   if (neighbors.empty()) return *(shift = 0.0F);
   const Limits limits = limitsOf(index, neighbors, progress);
   const MaskedBand& own = cached(layers_[index], progress);
-  // What is taken off the layer's own values changes its share by half of that, so that half of the
-  // way is gone: of the rest, lines through thin layers tell too little, and neighbors move as
-  // well.
+  // A number subtracted from the layer's own values changes its share by half of that, so that only
+  // half the way is covered. For the other half, lines through thin layers would give wrong
+  // volumes, and neighbors move as well.
   shift = shiftToVolumeOf(own.band, own.mask, own.excess, [&](float value, int x, int y, int z) {
     return shared(value, limits.leastAt(x, y, z), limits.whole->band.valueAt(x, y, z));
   });
@@ -276,7 +278,7 @@ std::optional<MaskedBand> LabelPartition::unite(const Progress& progress) {
     forVoxels(block, [&](std::size_t n, const std::array<int, 3>& at) {
       const float least = members.leastAt(
           result.band.first[0] + at[0], result.band.first[1] + at[1], result.band.first[2] + at[2]);
-      // The rest's own value is the opposite of that of all together.
+      // The value of the rest is the negative of that of all layers together.
       const float value = std::isnan(least) ? block.value[n] : 0.5F * (block.value[n] + least);
       const auto here = static_cast<std::size_t>(result.mask.at(at[0], at[1], at[2]));
       block.value[n] = onSide(value, result.mask.inside[here] != 0);

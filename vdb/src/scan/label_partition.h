@@ -19,36 +19,41 @@ namespace palpate::vdb {
 struct MaskedBand {
   Mask mask;
   Band band;
-  /// Of lapped layers: voxels of other layers, which the mask may or may not hold. Else empty.
+  /// For lapped layers: voxels of other layers, which the mask may or may not hold. Otherwise
+  /// empty.
   Mask neighbors = {};
-  double excess = 0.0;  ///< [voxels] that its surface encloses more than the mask has
+  double excess = 0.0;  ///< [voxels] how much more volume the surface encloses than the mask has
 };
 
-/// Every layer, and all of them together, is smoothed by itself, u_i and u_all, and then takes
-///   f_i = (u_i - min over all others of u_j) / 2,
-/// what is in no layer, u_0 = -u_all, being one of the others. Edges, where three meet, cost small
-/// layers some volume; so from each u_i but u_0 a number is taken that brings f_i halfway back to
-/// its voxels' volume. Where only two meet u_j is -u_i and f_i is u_i; where more do, the layers
-/// share the walls u_i = u_j, and any two have f_i = -f_j there: no gap, no overlap. But a grid
-/// rounds off edges, and walls of three that meet form one: there grids of f_i leave gaps.
+/// Each layer, and all of them together, is smoothed by itself, which gives u_i and u_all. Then
+/// each layer takes
+///   f_i = (u_i - min over all others of u_j) / 2.
+/// The space in no layer, u_0 = -u_all, is one of the others. Edges where three layers meet would
+/// cost small layers some volume; so from each u_i except u_0 a number is subtracted that brings
+/// f_i halfway back to the volume of its voxels. Where only two meet, u_j is -u_i and f_i is u_i;
+/// where more meet, the layers share the walls u_i = u_j, where any two have f_i = -f_j: no gap, no
+/// overlap. But a grid rounds off edges, and walls that meet form edges: there grids of f_i leave
+/// gaps.
 ///
-/// Lapped layers reach over that, into each other but not into what is in no layer:
+/// Lapped layers cover these gaps. They reach into each other, but not into the space in no layer:
 ///   e_i = max(min((u_i + u_all) / 2, u_all + groove), (u_i - min over the other layers of u_j) / 2
 ///   - lap)
-/// The wall between two of them is where e_i = e_j, which is where u_i = u_j, and wherever
-/// u_all is below -groove, one of them is negative. Far from others e_i is f_i.
+/// The wall between two of them is where e_i = e_j, which is where u_i = u_j; and wherever u_all is
+/// below -groove, at least one of them is negative. Far from other layers e_i equals f_i.
 ///
-/// Layers that have a label in common do not limit each other. Values are about distances, in steps
-/// of the image's smallest spacing.
+/// Layers that have a label in common do not limit each other. Values are approximately distances,
+/// in steps of the image's smallest spacing.
 class LabelPartition {
  public:
   /// `image` must outlive it. `layers`: the labels of each.
   LabelPartition(const Image& image, std::vector<std::vector<int>> layers);
 
-  /// The mask is empty if no voxel has one of the layer's labels. Any thread.
+  /// The surface of a layer. The mask is empty if no voxel has one of its labels. Callable from any
+  /// thread.
   [[nodiscard]] MaskedBand layer(std::size_t index, LabelEdge edge, const Progress& progress);
 
-  /// -f_0: all layers together; none if no voxels of two layers lie beside each other. Any thread.
+  /// -f_0: all layers together; nothing if no voxels of two layers lie beside each other. Callable
+  /// from any thread.
   [[nodiscard]] std::optional<MaskedBand> unite(const Progress& progress);
 
  private:
@@ -57,10 +62,11 @@ class LabelPartition {
   [[nodiscard]] std::shared_ptr<const MaskedBand> smoothed(const Labels& labels,
                                                            const Progress& progress) const;
   [[nodiscard]] const MaskedBand& cached(const Labels& labels, const Progress& progress);
-  /// The layers that come near this one, and have no label in common with it.
+  /// The layers that come near this one and have no label in common with it.
   [[nodiscard]] std::vector<std::size_t> neighborsOf(std::size_t index, const Progress& progress);
 
-  /// The layers near one, all of them together with it, and the numbers taken off.
+  /// The layers near one, the union of all including it, and the numbers subtracted from their
+  /// values.
   struct Limits {
     const MaskedBand* whole = nullptr;
     std::vector<std::pair<const Band*, float>> others;
@@ -70,20 +76,20 @@ class LabelPartition {
   };
   [[nodiscard]] Limits limitsOf(std::size_t index, const std::vector<std::size_t>& neighbors,
                                 const Progress& progress);
-  /// [steps] The number taken off a layer's own values.
+  /// [steps] The number subtracted from a layer's own values.
   [[nodiscard]] float shiftOf(std::size_t index, const Progress& progress);
 
   const Image& image_;
   std::vector<Labels> layers_;
   std::map<Labels, std::shared_ptr<const MaskedBand>> made_;
-  std::vector<std::optional<float>> shifts_;  ///< of the layers
+  std::vector<std::optional<float>> shifts_;  ///< for each layer
   std::mutex mutex_;
 };
 
-/// Where the values of a band are known to be near a mask's surface, but not on which side.
+/// Size of values that are near a mask's surface but whose side was not known.
 inline constexpr float kLeastValue = 1e-3F;
 
-/// Voxels around a mask that its band needs.
+/// Margin of voxels around a mask that its band needs.
 inline constexpr int kBandMargin = Band::kReach + 1;
 
 }  // namespace palpate::vdb

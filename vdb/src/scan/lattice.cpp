@@ -6,7 +6,7 @@
 namespace palpate::vdb {
 namespace {
 
-constexpr float kLargest = 1e30F;  // stands for infinite intensities; differences stay finite
+constexpr float kLargest = 1e30F;  // replaces infinite intensities, so that differences stay finite
 constexpr float kSmallest = 1e-30F;
 
 }  // namespace
@@ -23,13 +23,13 @@ Band bandOfThreshold(const Image& image, double above, const Mask& mask, const V
                                        mask.first[1] + block.first[1] + (place >> 3 & 7),
                                        mask.first[2] + block.first[2] + (place & 7));
       const auto apart = static_cast<float>(std::abs(above - static_cast<double>(intensity)));
-      // NaN is background; what lies across from it then decides alone where the surface is.
+      // NaN is background; the voxel on the other side alone then decides where the surface is.
       const float size = std::isnan(apart) ? kSmallest : std::clamp(apart, kSmallest, kLargest);
       if (size < kLargest) largest = std::max(largest, size);
       block.value[n] = std::copysign(size, block.value[n]);
     }
   }
-  // Infinite ones become as large as the largest that is not.
+  // Infinite values become as large as the largest finite one.
   for (BandBlock& block : band.blocks) {
     for (float& value : block.value) {
       if (std::fabs(value) > largest) value = std::copysign(largest, value);

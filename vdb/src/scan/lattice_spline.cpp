@@ -13,16 +13,16 @@ using openvdb::Coord;
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
 constexpr int kNewtonSteps = 12;
-// In steps of the shortest axis.
+// [steps of the shortest axis] longest Newton step.
 constexpr double kLongest = 0.5;
 constexpr double kEnough = 1e-6;
-/// What a step of Newton's method leaves is about its square.
+/// After a Newton step the remaining error is about the square of the step.
 constexpr double kEnoughByNewton = 1e-3;
 constexpr double kLeastBent = 1e-3;
-/// Layers beyond the border that a spline at the surface depends on.
+/// Number of mirrored layers beyond the border that a spline at the surface depends on.
 constexpr int kMirrored = 4;
 
-/// Some vector at right angles to `v`.
+/// Some vector perpendicular to `v`.
 Vec3 across(const Vec3& v) noexcept {
   const Vec3 size = glm::abs(v);
   const bool by_x = size.x <= size.y && size.x <= size.z;
@@ -31,7 +31,7 @@ Vec3 across(const Vec3& v) noexcept {
                             : Vec3(v.y, -v.x, 0.0);
 }
 
-/// Places along one axis where a voxel is seen: itself, and its images beyond the borders.
+/// Places along one axis where a voxel counts: itself, and its mirror images beyond the borders.
 struct Images {
   std::array<int, 3> at{};
   int count = 1;
@@ -73,7 +73,7 @@ void mirror(const Band& band, openvdb::FloatGrid& grid) {
   }
 }
 
-/// The band as a level set of voxels 1 m wide, so that positions are box indices.
+/// The band as a level set with voxels 1 m wide, so that positions equal box indices.
 LevelSet gridOf(const Band& band, const Mask& mask) {
   float largest = 1.0F;
   for (const BandBlock& block : band.blocks) {
@@ -129,7 +129,7 @@ std::optional<double> LatticeSpline::valueAt(const Vec3& index) const noexcept {
 
 std::optional<LatticeSpline::Foot> LatticeSpline::foot(const Vec3& p,
                                                        const Vec3& start) const noexcept {
-  // By index throughout: the axes enter by their metric alone.
+  // Everything is computed in index space: the axes enter through their metric alone.
   const Vec3 target = to_index_ * (p - origin_);
   Vec3 q = to_index_ * (start - origin_);
   for (int step = 0; step < kNewtonSteps; ++step) {
@@ -142,7 +142,8 @@ std::optional<LatticeSpline::Foot> LatticeSpline::foot(const Vec3& p,
     const Vec3 apart = target - q;
     const double side = glm::dot(apart, gradient);
     const double m = side / square;
-    // To the surface, and along its tangents; how S bends across it is of no account.
+    // Solve towards the surface and in its tangent plane; how S curves across the surface does not
+    // matter.
     const Vec3 down = (-jet.value / square) * uphill;
     const Mat3 bent = metric_ + m * jet.hessian;
     const Vec3 u = across(gradient);
@@ -153,10 +154,10 @@ std::optional<LatticeSpline::Foot> LatticeSpline::foot(const Vec3& p,
     const double uv = glm::dot(u, bent_v);
     const double vv = glm::dot(v, bent_v);
     const double size = uu * vv - uv * uv;
-    // Of the metric alone that would be:
+    // Determinant without curvature, from the metric alone:
     const double flat = metric_size_ * square * glm::dot(u, u) * glm::dot(u, u);
-    // Beyond a center of curvature the matrix turns indefinite; there the point on the tangent
-    // plane leads.
+    // Beyond a center of curvature the matrix is indefinite; there the step goes to the point on
+    // the tangent plane.
     Vec3 move = apart - m * uphill + down;
     double enough = kEnough;
     if (uu > 0.0 && size > kLeastBent * flat) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Voxels of a leaf and of those around it, by their place.
+/// Finds voxels of a leaf, and of the leaves around it, by their place.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace palpate::vdb {
                                   (voxel.z() & 7));
 }
 
-/// Feet of voxels around one, by their steps from it.
+/// Closest points of voxels near one leaf, by their steps from it.
 class Around {
  public:
   Around(const DistanceLeaves& leaves, const DistanceLeaf& leaf) : leaves_(leaves), leaf_(leaf) {}
@@ -27,7 +27,7 @@ class Around {
     const DistanceLeaf* leaf;
     std::size_t place;
   };
-  /// Null: there is none. `at` counts from the leaf's first voxel, -8 to 15.
+  /// Null: there is none. `at` is relative to the leaf's first voxel, -8 to 15.
   [[nodiscard]] Voxel at(const openvdb::Coord& at) const noexcept {
     const auto side = [](int i) { return (i >> 3) + 1; };
     const int n = 9 * side(at.x()) + 3 * side(at.y()) + side(at.z());

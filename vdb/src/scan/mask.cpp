@@ -7,7 +7,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// Turns `from` into `to` in the piece of `voxels` around `seed`; returns its size.
+/// Flood fill: turns `from` into `to` in the component of `voxels` around `seed`; returns its size.
 std::size_t flood(std::vector<std::uint8_t>& voxels, std::ptrdiff_t seed, std::uint8_t from,
                   std::uint8_t to, std::span<const std::ptrdiff_t> steps,
                   std::vector<std::ptrdiff_t>& stack) {
@@ -21,8 +21,9 @@ std::size_t flood(std::vector<std::uint8_t>& voxels, std::ptrdiff_t seed, std::u
     ++count;
     for (const std::ptrdiff_t step : steps) {
       const std::ptrdiff_t next = here + step;
-      // Inside voxels never lie in the frame. A flood of the outside does reach it, and may there
-      // step round the end of a row: into the frame again, which is all one piece.
+      // Inside voxels never lie in the frame. A fill of the outside does reach the frame, and may
+      // there step around the end of a row; it then enters the frame again, which is connected
+      // anyway.
       if (next < 0 || next >= size || voxels[static_cast<std::size_t>(next)] != from) continue;
       voxels[static_cast<std::size_t>(next)] = to;
       stack.push_back(next);
@@ -31,7 +32,8 @@ std::size_t flood(std::vector<std::uint8_t>& voxels, std::ptrdiff_t seed, std::u
   return count;
 }
 
-/// For each voxel value, whether it passes; label images and quiet air repeat values in long runs.
+/// Whether a voxel value passes; the last result is kept, because label images and quiet air repeat
+/// values in long runs.
 class CachedTest {
  public:
   explicit CachedTest(const std::function<bool(float)>& test) : test_(test) {}
@@ -126,7 +128,7 @@ std::size_t fillCavities(Mask& mask) {
                                             y - x,  y + x,  z - y,  z - x,  z + x,  z + y};
   constexpr std::uint8_t kOpen = 2;
   std::vector<std::ptrdiff_t> stack;
-  flood(mask.inside, 0, 0, kOpen, faces_and_edges, stack);  // 0 lies in the frame
+  flood(mask.inside, 0, 0, kOpen, faces_and_edges, stack);  // index 0 lies in the frame
   std::size_t filled = 0;
   for (std::uint8_t& voxel : mask.inside) {
     filled += voxel == 0 ? 1U : 0U;

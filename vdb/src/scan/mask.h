@@ -1,5 +1,5 @@
 #pragma once
-/// Voxels that belong to a shape, and their pieces and cavities.
+/// The voxels of a shape, with its connected components and cavities.
 
 #include <array>
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace palpate::vdb {
 
-/// Inside or outside for each voxel of a box of an image, in a frame of outside voxels one thick,
-/// so that every voxel of the box has its neighbors.
+/// Inside or outside for each voxel of a box of an image, with a frame of outside voxels one thick,
+/// so that every voxel of the box has neighbors.
 ///
-/// Two inside voxels hang together across a face, two outside voxels across a face or an edge.
+/// Inside voxels are connected across faces, outside voxels across faces and edges.
 struct Mask {
   std::array<int, 3> first{};        ///< image index of the box's first voxel
   std::array<int, 3> box{};          ///< voxels of the box along i, j, k
@@ -22,12 +22,13 @@ struct Mask {
   [[nodiscard]] std::array<std::ptrdiff_t, 3> strides() const noexcept {
     return {1, box[0] + 2, static_cast<std::ptrdiff_t>(box[0] + 2) * (box[1] + 2)};
   }
-  /// Place in `inside` of box voxel (i, j, k); each may run from -1 to box[a], both in the frame.
+  /// Index into `inside` of box voxel (i, j, k); each coordinate may be from -1 to box[a], both in
+  /// the frame.
   [[nodiscard]] std::ptrdiff_t at(int i, int j, int k) const noexcept {
     const auto s = strides();
     return (i + 1) + s[1] * (j + 1) + s[2] * (k + 1);
   }
-  /// Whether it holds the voxel at an index of the image.
+  /// Whether the mask holds the voxel at an index of the image.
   [[nodiscard]] bool holds(int i, int j, int k) const noexcept {
     const std::array<int, 3> local = {i - first[0], j - first[1], k - first[2]};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -37,16 +38,16 @@ struct Mask {
   }
 };
 
-/// The voxels whose value passes `test`, in the smallest box of the image that holds them and
-/// `margin` voxels around, as far as the image goes. The box is empty if there are none.
+/// The voxels whose value passes `test`, in the smallest box that holds them and `margin` voxels
+/// around, clipped to the image. The box is empty if there are none.
 [[nodiscard]] Mask maskOf(const Image& image, const std::function<bool(float)>& test, int margin);
 
-/// Leaves only the largest piece (the first in voxel order if two are equal); returns how many
-/// there were.
+/// Keeps only the largest component (the first in voxel order if two are equal); returns how many
+/// components there were.
 std::size_t keepLargestPiece(Mask& mask);
 
-/// Fills all outside voxels that no path of outside voxels joins to the border of the box: what an
-/// air path leads into stays open. Returns how many were filled.
+/// Fills all outside voxels that no path of outside voxels connects to the border of the box;
+/// spaces connected to the border by a passage stay open. Returns how many voxels were filled.
 std::size_t fillCavities(Mask& mask);
 
 }  // namespace palpate::vdb

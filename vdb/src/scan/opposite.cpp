@@ -9,13 +9,13 @@ namespace {
 constexpr int kWide = Opposite::kSide + 2 * Opposite::kReach;
 constexpr int kWindow = 2 * Opposite::kReach + 1;
 
-/// Least squares of eight voxels side by side, and what they are in voxels.
+/// Least squares of eight voxels side by side, and the same in voxels.
 struct Row {
   alignas(32) float square[8];
   alignas(32) float voxels[8];
 };
 
-/// kCubic: both are the same, and square is enough.
+/// kCubic: both are the same, so that only `square` is computed.
 template <bool kCubic>
 inline void takeLess(Row& best, const Row& other, float square, float voxels) noexcept {
   for (int n = 0; n < 8; ++n) {
@@ -82,7 +82,7 @@ bool Opposite::findIn(const Mask& mask, const std::array<int, 3>& first,
     }
   }
   if (any[0] == 0 || any[1] == 0) return false;
-  // To the nearest voxel of each side, along x, then y, then z.
+  // Distance to the nearest voxel of each side, along x, then y, then z.
   Row along_x[kWide][kWide];
   Row along_y[kWide][kSide];
   for (std::size_t side = 0; side < 2; ++side) {
@@ -115,7 +115,7 @@ bool Opposite::findIn(const Mask& mask, const std::array<int, 3>& first,
             takeLess<kCubic>(best, along_y[z + kReach + d][y], squares_[2][n],
                              static_cast<float>(d * d));
         }
-        // Of voxels on the other side only: its own distance is 0.
+        // Distances count for voxels on the other side only: those of this side have distance 0.
         const std::uint32_t other = rows[1 - side][z + kReach][y + kReach] >> kReach;
         for (int x = 0; x < kSide; ++x) {
           const int n = (z * kSide + y) * kSide + x;

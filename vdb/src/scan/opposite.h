@@ -1,5 +1,5 @@
 #pragma once
-/// For each voxel of a block, how far the nearest voxel on the other side of a mask is.
+/// For each voxel of a block, the distance to the nearest voxel on the other side of a mask.
 
 #include <array>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace palpate::vdb {
 
-/// Distance transforms along one axis after the other (P. Felzenszwalb and D. Huttenlocher, 2012),
-/// of voxels at most kReach steps away along each axis. What lies beyond the image is on no side.
+/// Distance transforms along one axis after another (P. Felzenszwalb and D. Huttenlocher, 2012), to
+/// voxels at most kReach steps away along each axis. Space beyond the image is on neither side.
 class Opposite {
  public:
   static constexpr int kReach = 5;
@@ -19,16 +19,16 @@ class Opposite {
   /// `spacing` of the voxels along each axis, in steps of the smallest.
   explicit Opposite(const Vec3& spacing);
 
-  /// For voxels (8 z + y) 8 + x of a block.
+  /// Results for voxels (8 z + y) 8 + x of a block.
   struct Found {
     alignas(32) std::array<float, 512> square;  ///< [steps^2] to the nearest; kNone: there is none
-    alignas(32)
-        std::array<float, 512> voxels;  ///< [voxels^2] the same way; the shortest where several are
+    alignas(32) std::array<float, 512> voxels;  ///< [voxels^2] for the same voxel; the shortest if
+                                                ///< several are equally near
   };
   static constexpr float kNone = 1e9F;
 
-  /// For the block whose first voxel is box voxel `first`. False if all that it reaches is on one
-  /// side: nothing is found then.
+  /// For the block whose first voxel is box voxel `first`. False if everything within reach is on
+  /// one side; then nothing is found.
   bool find(const Mask& mask, const std::array<int, 3>& first, Found& found) const noexcept;
 
  private:
@@ -37,8 +37,8 @@ class Opposite {
 
   bool is_cubic_;
   std::array<std::array<float, kReach + 1>, 3>
-      squares_{};  ///< [steps^2] of so many voxels along each axis
-  /// Steps to the nearest of eleven voxels that has a bit; 255: none has.
+      squares_{};  ///< [steps^2] for a number of voxels along each axis
+  /// Steps to the nearest set bit among eleven voxels; 255: no bit is set.
   std::vector<std::uint8_t> nearest_;
 };
 

@@ -19,17 +19,18 @@ namespace {
 using openvdb::Coord;
 
 constexpr std::size_t kVoxels = DistanceLeaf::kVoxels;
-/// Voxels beyond the band that still tell their neighbors: the nearest way round a hollow leads
-/// past them.
+/// [voxels] Voxels up to this far beyond the band still pass their points on to neighbors: the
+/// shortest path of voxels around a hollow may lead through them.
 constexpr double kBeyond = 1.0;
-/// [voxels] A neighbor's point that is nearer by less is the same one.
+/// [voxels] A neighbor's point that is nearer by less than this counts as the same point.
 constexpr double kNearer = 1e-3;
-/// [lattice diagonals] By how much a closest point may be further off than where its search began,
-/// a crossing by linear interpolation; more is another place's.
+/// [lattice diagonals] How much farther off a closest point may be than the start of its search, a
+/// crossing by linear interpolation; a point farther than that belongs to another place.
 constexpr double kSamePlace = 0.3;
-/// [lattice diagonals] From there on the nearest lattice point is on a voxel's own side.
+/// [lattice diagonals] From this distance on the nearest lattice point is on a voxel's own side.
 constexpr double kClear = 0.5;
-/// Of a distance: what the spline has to be at least, to be of the same surface.
+/// The spline's value must be at least this share of the distance; otherwise it belongs to another
+/// part of the surface.
 constexpr double kAlike = 0.5;
 
 class Redistance {
@@ -47,7 +48,7 @@ class Redistance {
         step_(std::min(
             {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])})),
         crossings_(crossingsOf(band, options)),
-        // A crossing's part of the surface reaches up to a lattice step from it.
+        // The surface near a crossing reaches up to a lattice step from it.
         leaves_(crossings_, plan_.half_width + kBeyond + diagonal_ / plan_.voxel),
         feet_(leaves_, plan_.half_width + kBeyond) {}
 
@@ -61,8 +62,8 @@ class Redistance {
       report(progress_, "distances", 0.1 + 0.7 * round / rounds);
       if (!feet_.spread(search)) break;
     }
-    // What is found late, a speck between lattice points, spreads through the band as well: half of
-    // it would contradict the rest.
+    // A speck between lattice points, which is found late, must spread through the whole band as
+    // well: spreading halfway would contradict the other distances.
     for (int look = 0; look < rounds; ++look) {
       report(progress_, "distances", 0.8 + 0.2 * look / rounds);
       if (!feet_.lookAround(search, kNearer)) break;
@@ -73,7 +74,8 @@ class Redistance {
   [[nodiscard]] const BakePlan& plan() const noexcept { return plan_; }
 
  private:
-  /// By linear interpolation, half-way to what lies beyond the image's border [voxels].
+  /// [voxels] Crossings by linear interpolation; at the image's border half-way to the voxel beyond
+  /// it.
   [[nodiscard]] std::vector<Vec3> crossingsOf(const Band& band, const BakeOptions& options) const {
     report(progress_, "distances", 0.0);
     std::vector<Vec3> crossings;
@@ -91,7 +93,7 @@ class Redistance {
           });
     }
     (void)voxelRange(bounds, plan_, options.name);
-    // Each lattice edge crosses some two thirds of a voxel's face of the surface.
+    // On the mean, each crossed lattice edge stands for two thirds of a voxel's face of surface.
     const double face = std::pow(std::abs(glm::determinant(image_.axes)), 2.0 / 3.0);
     const double area =
         static_cast<double>(crossings.size()) * face / (1.5 * plan_.voxel * plan_.voxel);
@@ -100,7 +102,7 @@ class Redistance {
     return crossings;
   }
 
-  /// Each voxel around a crossing starts from the nearest one.
+  /// Each voxel around crossings starts from the nearest one.
   void seed() {
     for (const Vec3& p : crossings_) {
       const Vec3 low = glm::floor(p);
@@ -126,7 +128,7 @@ class Redistance {
     });
   }
 
-  /// For the closest point of a voxel, from `start` [voxels from it] on.
+  /// Searches the closest point of a voxel, from `start` [voxels from it].
   [[nodiscard]] FoundFoot found(const DistanceLeaf& leaf, std::size_t place,
                                 const Vec3& start) const noexcept {
     const Vec3 p = leaf.positionOf(place) * plan_.voxel;
@@ -142,8 +144,8 @@ class Redistance {
     if (holds && result.distance * plan_.voxel < kClear * diagonal_) {
       result.inside = by_foot;
     } else {
-      // Smoothing rounds corners off that the mask has: there the spline tells, if it and the point
-      // agree on how far it is.
+      // Smoothing rounds off corners of the mask. There the spline decides the side, if its value
+      // and the distance to the point agree.
       const bool by_mask = latticeInside(p);
       const double value = spline_.valueAt(indexOf(p)).value_or(0.0) * step_;
       const bool agrees = holds && (value < 0.0) == by_foot &&
@@ -153,7 +155,7 @@ class Redistance {
     return result;
   }
 
-  /// In the band's box.
+  /// Converts to indices of the band's box.
   [[nodiscard]] Vec3 indexOf(const Vec3& p) const noexcept {
     return to_index_ * (p - image_.origin) - Vec3(mask_.first[0], mask_.first[1], mask_.first[2]);
   }
@@ -176,8 +178,8 @@ class Redistance {
   const Progress& progress_;
   BakePlan plan_;
   Mat3 to_index_;
-  double diagonal_;              ///< [m] of a lattice cell
-  double step_;                  ///< [m] the spline's unit
+  double diagonal_;              ///< [m] diagonal of a lattice cell
+  double step_;                  ///< [m] unit of the spline's values
   std::vector<Vec3> crossings_;  ///< [voxels]
   DistanceLeaves leaves_;
   FootSpread feet_;

@@ -7,8 +7,8 @@
 namespace palpate::vdb {
 
 /// A block and two voxels around it, in OpenVDB's order (the last axis is the fastest). Voxels that
-/// do not count are NaN. What lies across a corner or off an edge by more than (1, 1) is never
-/// read.
+/// do not count are NaN. Voxels across a corner, or farther than (1, 1) off across an edge, are
+/// never read.
 struct Patch {
   static constexpr int kHalo = 2;
   static constexpr int kSide = 8 + 2 * kHalo;
@@ -23,43 +23,43 @@ struct Patch {
   }
 };
 
-/// Of the squares in the energy. Plain arrays: a file compiled for newer processors shares no code
-/// with others, not even that of std::array.
+/// Weights of the squares in the energy. Plain arrays: a file compiled for newer processors shares
+/// no code with others, not even that of std::array.
 struct RelaxWeights {
-  float axis[3];   ///< of the second difference along each axis
-  float plane[3];  ///< of the mixed one across each axis
+  float axis[3];   ///< for the second difference along each axis
+  float plane[3];  ///< for the mixed difference in the plane across each axis
 };
 
-/// What one step of relaxation does with each voxel: away from the force, within its bounds, and
-/// then on with its momentum. 512 floats each, in OpenVDB's order.
+/// The data of one relaxation step. Each voxel moves against the force, is clamped to its bounds,
+/// and gets its momentum added. 512 floats each, in OpenVDB's order.
 struct RelaxStep {
-  const float* bias;   ///< force that is taken out
-  const float* share;  ///< of the force, by which the voxel moves
+  const float* bias;   ///< force that is subtracted
+  const float* share;  ///< share of the force by which the voxel moves
   const float* lower;
   const float* upper;
   float* value;  ///< in: before; out: after
-  float* ahead;  ///< out: the value and its momentum
+  float* ahead;  ///< out: the value plus its momentum
   float momentum;
 };
 
-/// The loops, for one kind of processor. The force is half the derivative of the sum of weighted
-/// squares of all second differences whose voxels count. All do rows (8 x + y) of eight voxels that
-/// `rows` has a bit for; voxels that do not count are NaN, in and out. All kinds give the same
-/// bits.
+/// The loops, for one kind of processor. The force is half the derivative of the weighted sum of
+/// squares of all second differences whose voxels count. All loops process the rows (8 x + y) of
+/// eight voxels whose bit in `rows` is set; voxels that do not count are NaN, in and out. All kinds
+/// give the same bits.
 struct RelaxKernels {
   void (*force)(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights, float* out);
   void (*relax)(const Patch& patch, std::uint64_t rows, const RelaxWeights& weights,
                 const RelaxStep& step);
-  /// One step of diffusion to the neighbors `stride` away along each axis: voxels that do not count
-  /// take nothing.
+  /// One step of diffusion between neighbors that are `stride` apart along each axis: voxels that
+  /// do not count exchange nothing.
   void (*diffuse)(const Patch& patch, std::uint64_t rows, int stride, const float* share,
                   float* out);
 };
 
-/// Those that the processor has.
+/// The loops for the present processor.
 [[nodiscard]] const RelaxKernels& relaxKernels() noexcept;
 
-/// What that chooses from.
+/// The loops for every processor, the fallback of relaxKernels().
 extern const RelaxKernels kBaseRelaxKernels;
 #if defined(__x86_64__)
 extern const RelaxKernels kAvx2RelaxKernels;

@@ -1,5 +1,5 @@
-// The inner loops of the smoothing of masks, eight voxels at a time: a kernel, as simd.h says. No
-// fused operations, so that every instruction set gives the same bits.
+// The inner loops of the smoothing of masks, eight voxels at a time: a kernel, as simd.h says. It
+// uses no fused operations, so that every instruction set gives the same bits.
 
 #include "scan/relax.h"
 #include "simd.h"
@@ -16,7 +16,7 @@ PALPATE_KERNEL const float* rowOf(const Patch& patch, int row) noexcept {
          (row & 7) * kStepY;
 }
 
-/// NaN, which any voxel outside the band makes of a difference, is not a difference.
+/// A difference that involves a voxel outside the band is NaN; it counts as 0.
 PALPATE_KERNEL Floats known(Floats a) noexcept { return whereLess(a, all(3e38F), a, all(0.0F)); }
 
 /// The second difference along one axis.
@@ -24,25 +24,26 @@ PALPATE_KERNEL Floats bend(const float* c, std::ptrdiff_t s) noexcept {
   return known(load(c - s) - 2.0F * load(c) + load(c + s));
 }
 
-/// The mixed difference of the square from c on.
+/// The mixed difference of the square that begins at c.
 PALPATE_KERNEL Floats twist(const float* c, std::ptrdiff_t u, std::ptrdiff_t v) noexcept {
   return known(load(c) - load(c + u) - load(c + v) + load(c + u + v));
 }
 
-/// The sum over the squares that share a row of voxels and its neighbor u away, by their places
-/// along the row: what the later of two such sums has more than the one before it is the force.
+/// For each place along a row, the sum over the squares that a row of voxels shares with its
+/// neighbor u away. The force is such a sum minus the one before it.
 PALPATE_KERNEL Floats twistAlongRow(const float* c, std::ptrdiff_t u) noexcept {
   return twist(c, u, kStepZ) - twist(c - kStepZ, u, kStepZ);
 }
 
-/// take(row, its first voxel, the force on its eight voxels) for each row that `rows` has a bit
-/// for. Differences that rows side by side share are worked out once. Those that touch a row
+/// Calls take(row, its first voxel, the force on its eight voxels) for each row whose bit in `rows`
+/// is set. Differences that adjacent rows share are computed once. Differences that touch a row
+/// without voxels are 0, so that nothing is carried across such a row.
 /// without voxels are none, so nothing is carried across one.
 template <typename Take>
 PALPATE_KERNEL void forForces(const Patch& patch, std::uint64_t rows, const RelaxWeights& w,
                               const Take& take) {
   const Floats none{};
-  // For each y, of the slabs x before and here.
+  // For each y: sums of slab x - 1 and of slab x.
   Floats bend_before[8];
   Floats bend_here[8];
   Floats twist_before[8];
@@ -56,7 +57,7 @@ PALPATE_KERNEL void forForces(const Patch& patch, std::uint64_t rows, const Rela
                       w.plane[1] * twistAlongRow(c, kStepX);
   }
   for (int x = 0; x < 8; ++x) {
-    // The same of the rows y before and here.
+    // The same for row y - 1 and row y.
     Floats y_bend_before = none;
     Floats y_bend_here = none;
     Floats xy_before = none;
@@ -100,7 +101,7 @@ PALPATE_KERNEL void forForces(const Patch& patch, std::uint64_t rows, const Rela
   }
 }
 
-/// The force itself.
+/// Stores the force itself.
 struct PutForce {
   float* out;
 
@@ -109,7 +110,7 @@ struct PutForce {
   }
 };
 
-/// What a step of relaxation makes of it.
+/// Applies a step of relaxation.
 struct Relax {
   const RelaxStep& step;
 
@@ -118,7 +119,7 @@ struct Relax {
     const Floats force = whole - load(step.bias + n);
     const Floats lower = load(step.lower + n);
     const Floats upper = load(step.upper + n);
-    // NaN is neither less nor more, and stays.
+    // NaN compares neither less nor greater, and stays.
     Floats value = load(c) - force * load(step.share + n);
     value = whereLess(value, lower, lower, value);
     value = whereLess(upper, value, upper, value);

@@ -15,7 +15,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// [grid voxels] Centers may lie on the surface, and edges are rounded off; more than this is lost.
+/// [grid voxels] Centers may lie on the surface, and edges are rounded off; a larger deviation
+/// counts as lost.
 constexpr double kLost = 0.2;
 
 constexpr const char* kLostKey = "lost_voxels";
@@ -24,12 +25,12 @@ constexpr const char* kPlaceKey = "lost_at";  // [m]
 
 struct Found {
   ScanLoss loss;
-  double depth = 0.0;  ///< [m] of loss.place on the wrong side
+  double depth = 0.0;  ///< [m] how far loss.place is on the wrong side
 };
 
-/// Whether the grid has a hole where the voxel is a single wall: a straight way through it, from a
-/// center on one side to that on the other, meets nothing of it. `sign`: 1 for inside voxels, -1
-/// for a gap's.
+/// Whether the grid has a hole where the voxel is a single wall: the straight line through it,
+/// between the centers of its two neighbors on the other side, does not meet the surface. `sign`: 1
+/// for inside voxels, -1 for those of a gap.
 bool isOpen(const Field& field, const Mask& mask, const Image& image, const std::array<int, 3>& at,
             double sign) {
   constexpr int kParts = 16;

@@ -1,5 +1,5 @@
 #pragma once
-/// Which of a scan's voxels a grid has on the wrong side.
+/// Finds the voxels of a scan that a grid has on the wrong side.
 
 #include <map>
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace palpate::vdb {
 
-/// Looks at every voxel of the band, by trilinear interpolation of the grid at its center; not at
-/// those that `apart` holds (nothing, or of the mask's box).
+/// Examines every voxel of the band, by trilinear interpolation of the grid at its center, except
+/// those that `apart` holds (it is empty, or has the mask's box).
 [[nodiscard]] ScanLoss findLoss(const LevelSet& grid, const Band& band, const Mask& mask,
                                 const Mask& apart, const Image& image);
 
-/// As metadata, for scanLoss() to read; none if nothing was lost.
+/// The loss as metadata, which scanLoss() reads; empty if nothing was lost.
 [[nodiscard]] std::map<std::string, std::string> metadataOf(const ScanLoss& loss);
 
 }  // namespace palpate::vdb

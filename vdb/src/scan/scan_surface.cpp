@@ -16,12 +16,12 @@
 namespace palpate::vdb {
 namespace {
 
-// Shares of the time, measured on the skin of a head at 1 mm with two cores; the rest is the
-// distances'.
+// Shares of the total time, measured on the skin of a head at 1 mm with two cores; the rest is for
+// the distances.
 constexpr double kMaskDone = 0.3;
 constexpr double kBandDone = 0.5;
 
-/// Every digit of a float.
+/// Printed with all digits of a float.
 std::string levelText(double value) { return shortNumber(value, 9); }
 
 double smallestSpacing(const Image& image) {
@@ -30,7 +30,7 @@ double smallestSpacing(const Image& image) {
   return smallest;
 }
 
-/// The surface of a band of values, which has the mask's sign everywhere.
+/// Bakes the surface of a band of values, which has the mask's sign everywhere.
 LevelSet bakeBand(const MaskedBand& of, const Image& image, double voxel_size, BakeOptions bake,
                   const Progress& progress) {
   const Band& band = of.band;
@@ -57,7 +57,7 @@ LevelSet bakeBand(const MaskedBand& of, const Image& image, double voxel_size, B
   const LevelSet whole = bakeSpline(spline, band, mask, image, wide, rest);
   const auto lost = metadataOf(findLoss(whole, band, mask, of.neighbors, image));
   if (!box) return whole.named(whole.info().name, lost);
-  // What a box cuts off has flat faces: those of the baked field.
+  // The faces where a box cuts are flat: those of the baked field.
   bake.box = box;
   bake.metadata.insert(lost.begin(), lost.end());
   return palpate::vdb::bake(*gridField(whole), bake, {});
@@ -124,7 +124,7 @@ LabelSurfaces::~LabelSurfaces() = default;
 
 namespace {
 
-/// Of several smoothings, one after the other, as the first part of the whole.
+/// Progress of several smoothings, one after another, as the first part of the whole.
 Progress smoothingOf(const Progress& progress) {
   if (!progress) return {};
   return [&progress, last = 0.0](std::string_view what, double fraction) mutable {

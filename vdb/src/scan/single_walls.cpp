@@ -5,7 +5,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// Places among the voxels around one: 9 i + 3 j + k, each from 0 to 2.
+/// Indices of the voxels around one: 9 i + 3 j + k, each from 0 to 2.
 struct Around {
   std::array<bool, 27> is_open{};
   std::array<bool, 27> is_reached{};
@@ -38,7 +38,7 @@ bool isSingleWall(const Mask& mask, const std::array<int, 3>& at, std::size_t ax
   const bool side = is_inside(here);
   if (is_inside(here - step) == side || is_inside(here + step) == side) return false;
   Around around;
-  around.by_edges = side;  // outside voxels hang together across edges too
+  around.by_edges = side;  // outside voxels are connected across edges too
   for (int n = 0; n < 27; ++n) {
     const std::ptrdiff_t there =
         mask.at(at[0] + n / 9 - 1, at[1] + n / 3 % 3 - 1, at[2] + n % 3 - 1);

@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kThick = 1.5;
 constexpr float kNone = std::numeric_limits<float>::infinity();
-constexpr double kFar = 1e12;  ///< stands for infinite squares, which have no parabola
+constexpr double kFar = 1e12;  ///< stands for infinite squares, which give no parabola
 
-/// The least of squares[m] + (n - m)^2 spacing^2 over all m, for every n, in place: the lower
-/// envelope of parabolas (P. Felzenszwalb and D. Huttenlocher, 2012).
+/// Computes in place, for every n, the least of squares[m] + (n - m)^2 spacing^2 over all m: the
+/// lower envelope of parabolas (P. Felzenszwalb and D. Huttenlocher, 2012).
 class Envelope {
  public:
   void run(std::vector<double>& squares, double spacing) {
@@ -90,7 +90,8 @@ void SliceDistances::measureSlice(const Mask& mask, int slice) {
   std::vector<double> squares(wide * high);
   std::vector<double> line;
   for (const int side : {0, 1}) {
-    // From voxels on the other side: squares to those on this one, along u and then along v.
+    // Squared distances from voxels on the other side to those on this one, along u and then along
+    // v.
     for (std::size_t b = 0; b < high; ++b) {
       line.assign(wide, kFar);
       for (std::size_t a = 0; a < wide; ++a) {

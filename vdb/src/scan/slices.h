@@ -1,5 +1,5 @@
 #pragma once
-/// Distances within the slices of a scan, where these are much thicker than its voxels are wide.
+/// Distances within the slices of a scan whose slices are much thicker than its voxels are wide.
 
 #include <array>
 #include <optional>
@@ -10,19 +10,19 @@
 
 namespace palpate::vdb {
 
-/// Signed distances to the mask's outline in each slice by itself. Between two slices they change
-/// evenly, so that the outlines of slices between, found by interpolation, lead over from one to
-/// the next (S. P. Raya and J. K. Udupa, "Shape-based interpolation", 1990): where a surface is
-/// nearly along the slices, far outlines tell where it is, and not only the steps between
+/// Signed distances to the mask's outline, in each slice by itself. Between two slices the
+/// distances are interpolated, so that the outlines in between lead from one slice to the next (S.
+/// P. Raya and J. K. Udupa, "Shape-based interpolation", 1990). Where a surface is nearly parallel
+/// to the slices, its place follows from outlines far away, not only from the steps between
 /// neighbors.
 class SliceDistances {
  public:
-  /// Nothing unless one spacing is at least half as long again as the others. `spacing` in steps of
-  /// the smallest.
+  /// Nothing unless one spacing is at least 1.5 times the others. `spacing` in steps of the
+  /// smallest.
   [[nodiscard]] static std::optional<SliceDistances> of(const Mask& mask, const Vec3& spacing);
 
-  /// [steps] about the distance of a voxel of the box from the surface, without sign; nothing where
-  /// the slice has no outline.
+  /// [steps] Approximate distance of a voxel of the box from the surface, without sign; nothing
+  /// where the slice has no outline.
   [[nodiscard]] std::optional<double> distanceAt(const std::array<int, 3>& at) const noexcept;
 
  private:
@@ -37,7 +37,7 @@ class SliceDistances {
 
   std::array<int, 3> box_{};
   Vec3 spacing_{1.0, 1.0, 1.0};
-  std::size_t axis_ = 2;       ///< across the slices
+  std::size_t axis_ = 2;       ///< perpendicular to the slices
   std::vector<float> values_;  ///< [steps] infinite: no outline
 };
 

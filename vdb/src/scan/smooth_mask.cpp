@@ -16,29 +16,29 @@ namespace {
 
 using Values = BandBlock::Values;
 
-// More steps smooth more; after these a ball, a ring and a tilted plane all have normals within
-// half a degree, and longer waves than a scan's voxels tell of are left alone.
+// More steps smooth more. After these numbers of steps a ball, a ring and a tilted plane all have
+// normals within half a degree, while waves longer than a scan's voxels can cause are left alone.
 constexpr int kFirstSteps = 80;
 constexpr int kSecondSteps = 140;
 constexpr double kMostStretch = 4.0;
 /// The largest eigenvalue of the energy's matrix is 144/42 of its diagonal.
 constexpr float kStep = 1.0F / 3.5F;
-/// Steps of diffusion: the first ones also mix odd and even voxels. Together a Gaussian of 5.7
-/// voxels.
+/// Steps of diffusion: the first ones, with stride 1, also mix odd and even voxels. Together they
+/// amount to a Gaussian of 5.7 voxels.
 constexpr int kDiffuseNear = 4;
 constexpr int kDiffuseFar = 26;
 constexpr double kDiffuseShare = 0.15;
-/// A bend sharper than this is a crease, not a curvature: a ball of two voxels has 0.1.
+/// A sharper bend than this is a crease, not a curvature: a ball of two voxels has 0.1.
 constexpr float kLargestForce = 0.1F;
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// What a block has while it is worked on.
+/// Working data of a block.
 struct Work {
-  alignas(32) Values ahead;  ///< where the gradient is taken: the value and its momentum
+  alignas(32) Values ahead;  ///< where the gradient is taken: the value plus its momentum
   alignas(32) Values next;
-  alignas(32) Values step;   ///< by which the force moves each voxel
-  alignas(32) Values force;  ///< that is taken out
+  alignas(32) Values step;   ///< how far a unit of force moves each voxel
+  alignas(32) Values force;  ///< force to subtract
 };
 
 class Smoothing {
@@ -59,12 +59,12 @@ class Smoothing {
 
   void run() {
     begin();
-    // Thick slices make long steps in voxels; what smooths them travels as far as the steps are
-    // many.
+    // With thick slices, a surface makes steps that are many voxels long; smoothing must travel as
+    // far, in as many iterations.
     const double longest = std::max({spacing_.x, spacing_.y, spacing_.z});
     const double more = std::min(longest, kMostStretch);
     relax(static_cast<int>(more * kFirstSteps), 0.0, 0.4, /*with_force=*/false);
-    work_ = HugeVector<Work>();  // the distances need memory of their own
+    work_ = HugeVector<Work>();  // frees this memory: the distances need their own
     report(progress_, "smooth the labels", 0.4);
     makeDistances(band_, mask_, axes_);
     begin();
@@ -82,7 +82,7 @@ class Smoothing {
     });
   }
 
-  /// 1 / (3.5 x the diagonal): how many of the energy's squares hold each voxel.
+  /// 1 / (3.5 x the diagonal): the diagonal counts the energy's squares that contain each voxel.
   void findSteps(std::size_t b) noexcept {
     Patch patch;
     gather(
@@ -124,7 +124,7 @@ class Smoothing {
     return sum;
   }
 
-  /// Whether all of the energy's squares around a voxel are there.
+  /// Whether all of the energy's squares around a voxel have their voxels.
   [[nodiscard]] static bool isWhole(const float* c) noexcept {
     bool whole = true;
     for (int a = 0; a < 3; ++a) {
@@ -146,7 +146,7 @@ class Smoothing {
       const double t_next = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * t * t));
       const auto momentum = static_cast<float>((t - 1.0) / t_next);
       t = t_next;
-      // The two take turns.
+      // The two arrays alternate.
       Values Work::*const from_here = step % 2 == 0 ? &Work::ahead : &Work::next;
       Values Work::*const to_there = step % 2 == 0 ? &Work::next : &Work::ahead;
       forBlocks(band_.blocks.size(), [&](std::size_t b) {
@@ -165,8 +165,8 @@ class Smoothing {
     forBlocks(band_.blocks.size(), [&](std::size_t b) { work_[b].ahead = band_.blocks[b].value; });
   }
 
-  /// The force on the distances as they are: at the band's edge whole, elsewhere what is left of it
-  /// when it has spread along the surface.
+  /// Computes the force on the present distances. At the band's edge it is used as it is; elsewhere
+  /// it is first smoothed along the surface by diffusion.
   void takeOutForces() {
     forBlocks(band_.blocks.size(), [&](std::size_t b) {
       Patch patch;
@@ -191,7 +191,7 @@ class Smoothing {
     for (int a = 0; a < 3; ++a) {
       share[a] = static_cast<float>(kDiffuseShare / (spacing_[a] * spacing_[a]));
     }
-    // `ahead` and `next` take turns.
+    // `ahead` and `next` alternate.
     for (int step = 0; step < kDiffuseNear + kDiffuseFar; ++step) {
       const int stride = step < kDiffuseNear ? 1 : 2;
       forBlocks(band_.blocks.size(), [&](std::size_t b) {

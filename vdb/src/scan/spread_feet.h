@@ -1,5 +1,5 @@
 #pragma once
-/// Closest points handed on from voxel to voxel, through the band and back.
+/// Passes closest points on from voxel to voxel, through the band and back.
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace palpate::vdb {
 
-/// What a search found for a voxel [voxels].
+/// The result of a voxel's search [voxels].
 struct FoundFoot {
   std::size_t place = 0;
   Vec3 foot{0.0, 0.0, 0.0};
@@ -19,12 +19,12 @@ struct FoundFoot {
 };
 
 /// A Search is FoundFoot(std::size_t leaf, std::size_t place, const Vec3& start, const
-/// openvdb::Coord& step): for the closest point of a voxel, from that of the neighbor which `step`
-/// leads to, `start` [voxels from the voxel], on. All voxels of a round search before any takes
-/// what it found, so that the order of threads does not count.
+/// openvdb::Coord& step). It finds the closest point of a voxel, starting from `start` [voxels from
+/// the voxel], the closest point of the neighbor at `step`. All voxels of a round search before any
+/// takes its result, so that the order of threads does not matter.
 class FootSpread {
  public:
-  /// `reach` [voxels]: voxels farther off than that tell their neighbors nothing.
+  /// `reach` [voxels]: voxels farther off than this pass nothing on to their neighbors.
   FootSpread(DistanceLeaves& leaves, double reach)
       : leaves_(leaves), reach_(reach), changed_(leaves.all().size(), 1) {}
 
@@ -44,7 +44,7 @@ class FootSpread {
     }
   }
 
-  /// One layer of voxels more. False: there is none.
+  /// Adds one more layer of voxels. False: there was none to add.
   template <typename Search>
   bool spread(const Search& search) {
     return round([&](std::size_t b, std::vector<FoundFoot>& fresh) {
@@ -60,8 +60,8 @@ class FootSpread {
     });
   }
 
-  /// Takes what a neighbor knows to be nearer by `nearer` [voxels]; false if none does. After the
-  /// last spread().
+  /// Lets each voxel take a neighbor's point that is nearer by more than `nearer` [voxels]; false
+  /// if there was none. To be called after the last spread().
   template <typename Search>
   bool lookAround(const Search& search, double nearer) {
     if (is_spreading_) std::fill(changed_.begin(), changed_.end(), std::uint8_t{1});
@@ -86,7 +86,7 @@ class FootSpread {
     std::uint64_t rows = 0;
   };
 
-  /// Voxels that have not been found, next to known ones.
+  /// Voxels that have no result yet, next to known ones.
   [[nodiscard]] Layer layerBeside(const DistanceLeaf& leaf) const noexcept {
     Layer next{leaves_.besideKnown(leaf)};
     for (std::size_t x = 0; x < 8; ++x) {
@@ -94,7 +94,7 @@ class FootSpread {
       for (std::uint64_t rest = next.voxels[x]; rest != 0; rest &= rest - 1) {
         const auto n = static_cast<std::size_t>(std::countr_zero(rest));
         if (leaf.distance[64 * x + n] != DistanceLeaf::kNowhere) {
-          next.voxels[x] &= ~(std::uint64_t{1} << n);  // found, and beyond the reach
+          next.voxels[x] &= ~(std::uint64_t{1} << n);  // has a result, but beyond the reach
         } else {
           next.rows |= std::uint64_t{1} << (8 * x + (n >> 3));
         }
@@ -107,8 +107,8 @@ class FootSpread {
     return {which / 9 - 1, which / 3 % 3 - 1, which % 3 - 1};
   }
 
-  /// Leaves where nothing has changed, and not beside them either, have nothing to find. Whether
-  /// something was found.
+  /// Runs a round over all leaves, except those that did not change, and whose neighbors did not
+  /// change. Returns whether something was found.
   template <typename Body>
   bool round(const Body& body) {
     std::vector<std::vector<FoundFoot>> found(leaves_.all().size());
@@ -129,7 +129,7 @@ class FootSpread {
   DistanceLeaves& leaves_;
   double reach_;
   bool is_spreading_ = true;
-  std::vector<std::uint8_t> changed_;  ///< by leaf: voxels of it were found in the last round
+  std::vector<std::uint8_t> changed_;  ///< for each leaf: some voxel got a result in the last round
 };
 
 }  // namespace palpate::vdb

@@ -9,8 +9,8 @@ bool isInside(const Mask& mask, const std::array<int, 3>& at) noexcept {
   return mask.inside[static_cast<std::size_t>(mask.at(at[0], at[1], at[2]))] != 0;
 }
 
-/// Whether the cube of 2^3 voxels from `low` on is on one side; what lies beyond the image goes
-/// with it.
+/// Whether all 2^3 voxels of the cube that begins at `low` are on one side; voxels beyond the image
+/// count as on that side.
 bool isCube(const Mask& mask, const std::array<int, 3>& low, bool side) noexcept {
   for (int corner = 0; corner < 8; ++corner) {
     const std::array<int, 3> at = {low[0] + (corner & 1), low[1] + (corner >> 1 & 1),
@@ -20,7 +20,7 @@ bool isCube(const Mask& mask, const std::array<int, 3>& low, bool side) noexcept
   return true;
 }
 
-/// Whether a cube holds a voxel of that side next to `at`: not only what lies beyond the image.
+/// Whether a cube has a voxel of that side next to `at`: one within the image.
 bool holdsSide(const Mask& mask, const std::array<int, 3>& low, const std::array<int, 3>& at,
                bool side) noexcept {
   for (int corner = 0; corner < 8; ++corner) {
@@ -34,7 +34,7 @@ bool holdsSide(const Mask& mask, const std::array<int, 3>& low, const std::array
 }
 
 bool isThin(const Mask& mask, const std::array<int, 3>& at, bool side) noexcept {
-  // Nearest cubes first: nearly always one of them is whole.
+  // Nearest cubes first: nearly always one of them is all on one side.
   for (const int reach : {1, 2}) {
     for (int n = 0; n < 64; ++n) {
       const std::array<int, 3> step = {n & 3, n >> 2 & 3, n >> 4};
@@ -62,7 +62,7 @@ bool isIn(const Mask& mask, const std::array<int, 3>& at) noexcept {
 bool isAtThinPart(const Mask& mask, const std::array<int, 3>& at) noexcept {
   const bool side = isInside(mask, at);
   if (isThin(mask, at, side)) return true;
-  // Held off both ways, a thin part keeps its volume.
+  // A thin part keeps its volume because the surface is held off on both sides of it.
   for (std::size_t a = 0; a < 3; ++a) {
     for (const int step : {-1, 1}) {
       std::array<int, 3> next = at;

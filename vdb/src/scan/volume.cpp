@@ -13,13 +13,13 @@ namespace palpate::vdb {
 namespace {
 
 constexpr int kRounds = 5;
-constexpr float kMostShift = 0.3F;  ///< [steps] by which all may move
+constexpr float kMostShift = 0.3F;  ///< [steps] largest shift of all values
 constexpr double kLeastRise =
-    0.2;  ///< [steps] between neighbors on two sides; grazing surfaces have less
+    0.2;  ///< [steps] least difference between neighbors on two sides; grazing surfaces have less
 constexpr double kLeastValue = 1e-6;  ///< [steps]
 
-/// What the surface encloses more than the voxels do, and how much more if it moves by a step; in
-/// voxels.
+/// How much more volume the surface encloses than the voxels have, and how much that grows if the
+/// surface moves by a step; in voxels.
 struct Excess {
   double volume = 0.0;
   double slope = 0.0;
@@ -60,7 +60,7 @@ class Volume {
   }
 
  private:
-  /// Sums of blocks first, so that the order does not depend on the threads.
+  /// Sums each block first, so that the order of additions does not depend on threads.
   Excess find() {
     forBlocks(band_.blocks.size(), [&](std::size_t b) {
       Excess& sum = sums_[b];
@@ -76,8 +76,8 @@ class Volume {
     return sumOf(sums_);
   }
 
-  /// By what the spline differs, where it passes zero, from the straight line between two voxels. A
-  /// shift of all leaves that as it is.
+  /// The difference between the spline and the straight line between two voxels, at the place where
+  /// the line passes zero. A shift of all values leaves this difference unchanged.
   void findBends() {
     const LatticeSpline spline(band_, mask_, Mat3(1.0), Vec3(0.0));
     forBlocks(band_.blocks.size(), [&](std::size_t b) {
@@ -89,8 +89,8 @@ class Volume {
     });
   }
 
-  /// visit(voxel, step to its neighbor outside, both values) for each inside voxel of a block that
-  /// has one; not beyond the image's border.
+  /// Calls visit(voxel, step to its neighbor outside, both values) for each inside voxel of a block
+  /// with an outside neighbor; not beyond the image's border.
   template <typename Visit>
   void forPairs(const BandBlock& block, const Visit& visit) const {
     forCrossings(

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the threads that bake run.
+/// Chooses the processors on which baking threads run.
 
 #include <functional>
 
@@ -7,10 +7,11 @@
 
 namespace palpate::vdb {
 
-/// Calls `bake`, and does what it bakes on all processors but one, which a servo loop that is
-/// pinned to it then has alone. The calling thread stays off it as well until `bake` returns. What
-/// is baked is the same.
+/// Calls `bake` and keeps its threads off `processor`, so that a servo loop pinned to that
+/// processor has it alone. The calling thread stays off it as well until `bake` returns. The result
+/// of the bake is the same.
 /// @throws Error (kUsage) for a processor that this thread may not run on, or where there is no
+/// other; and whatever `bake` throws.
 /// other; and what `bake` throws.
 PALPATE_EXPORT void bakeOffProcessor(int processor, const std::function<void()>& bake);
 

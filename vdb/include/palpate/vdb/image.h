@@ -13,9 +13,9 @@
 
 namespace palpate::vdb {
 
-/// The library's own is RAS: to the right, the front, up.
+/// Directions of a file's axes. The library itself uses RAS: to the right, the front, up.
 enum class Space {
-  kStated,  ///< as the file says; if it does not, what its format has by convention
+  kStated,  ///< as the file says; if it says nothing, its format's convention
   kRas,
   kLps,  ///< to the left, the back, up: x and y negated
 };
@@ -26,7 +26,7 @@ using NameTable = std::map<int, std::string>;
 /// Red, green, blue, each from 0 to 1.
 using LabelColor = std::array<float, 3>;
 
-/// What is known of label values; not all that have a name need have a color.
+/// Names and colors of label values; not every value with a name needs a color.
 struct LabelTable {
   NameTable names;                   ///< by label value
   std::map<int, LabelColor> colors;  ///< by label value
@@ -64,27 +64,27 @@ struct PALPATE_EXPORT Image {
 
 /// Which of a file's statements about its place in space counts.
 enum class AffineChoice {
-  kAuto,     ///< NIfTI: sform, else qform, and both must agree; else what the file says
+  kAuto,     ///< NIfTI: sform, else qform, and both must agree; other formats: what the file says
   kSform,    ///< NIfTI
   kQform,    ///< NIfTI
   kSpacing,  ///< NIfTI, NRRD: spacings only; axes along R, A, S, the first voxel's center at the
              ///< origin
 };
 
-/// What a caller says where files leave room.
+/// A caller's choices where files leave something open.
 struct ImageOptions {
   AffineChoice affine = AffineChoice::kAuto;  ///< which of the file's transforms places the voxels
   Space space = Space::kStated;  ///< of an NRRD file whose space is not an anatomical one
   std::optional<int> frame;      ///< of a 4-D file, from 0; not given: 4-D is refused
   std::string series;            ///< DICOM: UID of the series, if a folder holds several
-  /// Further files: each of them and the first is a mask, a structure of its own.
+  /// Further files: the first file and each of these is a mask, each for a structure of its own.
   std::vector<std::string> with = {};
-  /// Structures that were segmented one by one: where some overlap, the first of these names has
-  /// the voxel. Where none of these is, the one of fewer voxels has it.
+  /// Structures that were segmented one by one: where some overlap, the first of these names gets
+  /// the voxel. Where none of these is involved, the structure with fewer voxels gets it.
   std::vector<std::string> priority = {};
 };
 
-/// All but the voxels.
+/// Everything about an image except its voxels.
 struct ImageInfo {
   std::array<int, 3> size{};   ///< voxels along i, j, k
   Mat3 axes{1.0};              ///< [m per voxel]
@@ -95,26 +95,27 @@ struct ImageInfo {
   std::string format = {};         ///< "NIfTI-1", "NRRD", "MetaImage", "DICOM series"
   std::string length_unit = {};    ///< of the file: "mm"
   LabelTable labels = {};          ///< out of the file itself
-  bool is_labels = false;          ///< the file says, or has a table of names
+  bool is_labels = false;          ///< the file says so, or has a table of names
 };
 
 /// Reads NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd), MetaImage (.mha, .mhd), DICOM
 /// series (a folder, or any file of it), DICOM segmentations and structure sets, and masks that
-/// together are a label image (a folder of the first three). What a file leaves open is asked for,
-/// by an error that names the option, or told in `notes`; what it contradicts itself in, and what
-/// is cut short or damaged, is refused. Each format's rules are in vdb/README.md.
+/// together are a label image (a folder of the first three). Where a file leaves something open, an
+/// error names the option that decides it, or `notes` tells what was assumed; a file that
+/// contradicts itself, is cut short or is damaged is refused. Each format's rules are in
+/// vdb/README.md.
 /// @throws Error (kInput, codes "nifti.*", "nrrd.*", "metaimage.*", "dicom.*", "masks.*",
 /// "image.*").
 [[nodiscard]] PALPATE_EXPORT Image readImage(const std::string& path,
                                              const ImageOptions& options = {});
 
-/// Header only: no voxel is read, so that only what the header and the file's size tell is checked.
+/// Header only: reads no voxel, so that it checks only what the header and the file's size show.
 /// Throws as readImage() does.
 [[nodiscard]] PALPATE_EXPORT ImageInfo readImageInfo(const std::string& path,
                                                      const ImageOptions& options = {});
 
-/// True if readImage() takes `path` for an image by its extension, in any case; of folders and
-/// files without one, if it holds or is DICOM.
+/// True if readImage() takes `path` for an image: by its extension, in upper or lower case; a
+/// folder or a file without extension if it holds DICOM.
 [[nodiscard]] PALPATE_EXPORT bool isImageFile(const std::string& path);
 
 /// NIfTI-1 and -2, .nii and .nii.gz, either byte order, every integer and float type of 8 to 64
@@ -154,22 +155,22 @@ struct ImageInfo {
 /// has two names, a missing name, a column that does not belong, a color out of range.
 [[nodiscard]] PALPATE_EXPORT LabelTable readLabelTable(const std::string& path);
 
-/// Assimp (glTF, GLB and what else it reads) and GDCM's unpackers (compressed DICOM pixels) are
-/// told what files hold in ways that cannot all be checked beforehand, and answer some damage with
-/// a crash or without end. In a child process of their own they end alone: readMesh() and
-/// readImage() then throw Error (kInput, mesh.unreadable or dicom.pixels). Everything else is read
-/// by code that checks each length itself.
+/// Assimp (glTF, GLB and the other formats it reads) and GDCM's unpackers (compressed DICOM pixels)
+/// trust statements in a file that cannot all be checked beforehand, and answer some damage with a
+/// crash or an endless loop. In a child process only the child ends: readMesh() and readImage()
+/// then throw Error (kInput, mesh.unreadable or dicom.pixels). Everything else is read by code that
+/// checks each length itself.
 struct LibraryLimits {
   bool in_child = false;  ///< the command sets it; a fork() takes some milliseconds
-  /// [bytes] that a child may take beyond what this process has; 0: 512 MB and 32 times the file.
-  /// Not enforced in builds with the address sanitizer, which reserves terabytes.
+  /// [bytes] Memory that a child may take beyond that of this process; 0: 512 MB and 32 times the
+  /// file. Not enforced in builds with the address sanitizer, which reserves terabytes.
   std::uint64_t memory = 0;
   /// [s] of processor time of a child; 0: 15 s and one more for each MB of the file.
   double seconds = 0.0;
 };
 
-/// For all reading from now on, by any thread. Not to be called while files are being read. A child
-/// is made by fork(): locks that other threads hold stay locked in it, so read while no other
+/// Applies to all reading from now on, by any thread. Do not call it while files are being read. A
+/// child is made by fork(): locks that other threads hold stay locked in it, so read while no other
 /// thread uses these two libraries.
 PALPATE_EXPORT void setLibraryLimits(const LibraryLimits& limits) noexcept;
 /// The limits that hold now.

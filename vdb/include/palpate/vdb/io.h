@@ -11,14 +11,14 @@
 
 namespace palpate::vdb {
 
-/// Writes beside `path` and renames; nothing is left behind on failure. Replaces an existing file
-/// only if `overwrite`. The grids of materials come after the others, with the voxels as their maps
-/// store them.
+/// Writes a temporary file beside `path` and renames it; nothing is left behind on failure.
+/// Replaces an existing file only if `overwrite`. The grids of materials follow the others, with
+/// the voxels as their maps store them.
 /// @throws Error (kOperation).
 PALPATE_EXPORT void writeVdb(const std::string& path, std::span<const LevelSet> grids,
                              bool overwrite, std::span<const NamedMaterialGrid> materials = {});
 
-/// One grid of a file as `info` reports it; level sets and others alike.
+/// One grid of a file as the verb `info` reports it; level sets and others alike.
 struct VdbGridSummary {
   std::string name;        ///< may be empty, or occur more than once in a file
   std::string type;        ///< "FloatGrid", ...
@@ -29,10 +29,10 @@ struct VdbGridSummary {
 /// the file cannot be read.
 [[nodiscard]] PALPATE_EXPORT std::vector<VdbGridSummary> listVdb(const std::string& path);
 
-/// What a grid without a class (OpenVDB's "unknown") is taken for.
+/// How to read a grid without a class (OpenVDB's "unknown").
 enum class UnknownClass {
   kRefuse,   ///< not read: readVdb() throws
-  kLevelSet  ///< signed distances, negative inside: for those who know
+  kLevelSet  ///< signed distances, negative inside: for callers who know that they are
 };
 
 /// Reads a float level set; `name` may be empty if the file holds exactly one. A file without a

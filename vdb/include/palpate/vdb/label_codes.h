@@ -9,7 +9,7 @@
 
 namespace palpate::vdb {
 
-/// What a label is by a system of codes: SCT (SNOMED CT), 272673000, Bone.
+/// The meaning of a label in a coding scheme: SCT (SNOMED CT), 272673000, Bone.
 struct LabelCode {
   std::string scheme;   ///< system of codes: "SCT"
   std::string value;    ///< the code: "272673000"
@@ -18,7 +18,7 @@ struct LabelCode {
 using LabelCodes = std::map<int, LabelCode>;  ///< by label value
 
 /// The type of each segment of a .seg.nrrd file, a DICOM segmentation or structure set, by the
-/// label values of readImage(), where the file has one; empty for other files. @throws Error
+/// label values of readImage(), where the file states one; empty for other files. @throws Error
 /// (kInput) as readImage().
 [[nodiscard]] PALPATE_EXPORT LabelCodes readLabelCodes(const std::string& path,
                                                        const ImageOptions& options = {});

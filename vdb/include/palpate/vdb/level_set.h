@@ -16,7 +16,7 @@
 /// with the readers of meshes and scans that they are made of.
 namespace palpate::vdb {
 
-/// What is known of a level set without looking at its voxels one by one.
+/// Facts about a level set that need no pass over its voxels.
 struct LevelSetInfo {
   std::string name;                             ///< grid name, `<layer>/surface`
   double voxel_size = 0.0;                      ///< [m]
@@ -59,45 +59,45 @@ enum class Sampler {
   kAccessor,   ///< trilinear by a plain OpenVDB accessor on the grid itself: no memory of its own
 };
 
-/// [voxels] The half width below which a band is too narrow for Sampler::kCubic: within a voxel of
-/// the surface the spline and its prefilter reach voxels up to 4.9 further off.
+/// [voxels] The half width below which a band is too narrow for Sampler::kCubic: for a query within
+/// a voxel of the surface the spline and its prefilter reach voxels up to 4.9 further off.
 inline constexpr double kCubicHalfWidth = 6.0;
 
-/// Whether a grid must be widened() before kCubic can read it. gridField() does so itself; ask, to
-/// tell the user.
+/// Whether a grid must be widened() before kCubic can read it. gridField() does so itself; call
+/// this to tell the user.
 [[nodiscard]] inline bool isTooNarrow(const LevelSetInfo& info) noexcept {
   // The background is a float, and may be a little below the width that was asked for.
   return info.half_width < kCubicHalfWidth - 1e-3;
 }
 
 /// The level set as a Field in [m]. The grid is copied into bricks (some 5.9 kB for 512 voxels; in
-/// parallel), and not needed afterwards, unless by kAccessor. A band that isTooNarrow() is
-/// widened first for kCubic.
+/// parallel), and not needed afterwards, except by kAccessor. For kCubic, a band that isTooNarrow()
+/// is widened first.
 ///
-/// A sample is in the band if all voxels it depends on are active. Outside the band it says so: the
-/// sign is right, the gradient zero, and |value| a lower bound of the distance that never exceeds
-/// the band's half width by more than the way to the nearest voxel; where the band is joined it may
-/// exceed the distance by the error that the band has there. The function is continuous everywhere
-/// (kCubic: C2).
+/// A sample is in the band if all voxels it depends on are active. Outside the band the sample says
+/// so: its sign is right, its gradient zero, and |value| a lower bound of the distance that never
+/// exceeds the band's half width by more than the distance to the nearest voxel; where the bound
+/// joins the band it may exceed the distance by the band's own error there. The function is
+/// continuous everywhere (kCubic: C2).
 ///
-/// metric() is kImplicit: between exact voxels the interpolant is off (trilinear: by voxel^2 / 8 of
-/// the curvatures; cubic: by the fourth power of voxel times curvature), and its gradient's length
-/// differs from 1. lipschitz() is measured from the voxels, and holds everywhere, across the band's
-/// rim too.
+/// metric() is kImplicit: between exact voxels the interpolant has an error (trilinear: voxel^2 / 8
+/// times the curvatures; cubic: the fourth power of voxel times curvature), and its gradient's
+/// length differs from 1. lipschitz() is measured from the voxels, and holds everywhere, across the
+/// band's rim too.
 ///
-/// Of a grid that reaches out of the bounded box `within` [m] only the bricks that samples there
+/// If the grid reaches beyond the bounded box `within` [m], only the bricks that samples in the box
 /// need are made, and the field is knownWithin() it; kAccessor keeps the grid as it is.
 [[nodiscard]] PALPATE_EXPORT FieldPtr gridField(const LevelSet& grid,
                                                 Sampler sampler = Sampler::kCubic,
                                                 const Box3& within = Box3::everything());
 
-/// [bytes] What the samples of a field by gridField() are read from: its bricks with their tables,
-/// or the grid for kAccessor. 0 for any other field.
+/// [bytes] Memory that the samples of a field by gridField() are read from: its bricks with their
+/// tables, or the grid for kAccessor. 0 for any other field.
 [[nodiscard]] PALPATE_EXPORT std::uint64_t memoryOf(const Field& grid_field) noexcept;
 
 /// The same grid with a band of `half_width` [voxels]; `grid` itself if it is as wide already. The
 /// voxels of the old band keep their values. A new voxel holds the distance to the closest point of
-/// the surface that the old band tells, found by Newton steps on a C2 spline through it.
+/// the surface in the old band, found by Newton steps on a C2 spline through it.
 /// @throws Error (kInput) if the old band is narrower than 2 voxels, kOperation for memory,
 /// kCancelled.
 [[nodiscard]] PALPATE_EXPORT LevelSet widened(const LevelSet& grid, double half_width,

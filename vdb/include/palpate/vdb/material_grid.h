@@ -20,18 +20,18 @@
 
 namespace palpate::vdb {
 
-/// How voxels were put into fewer bits: a voxel is least + step * count, count from 0 to 2^bits
+/// How voxels were quantized to fewer bits: a voxel is least + step * count, count from 0 to 2^bits
 /// - 1.
 struct Quantisation {
   int bits = 32;       ///< 8 or 16; 32: floats, as they were given
   double least = 0.0;  ///< [SI unit]
   double step = 0.0;   ///< [SI unit]
-  double error = 0.0;  ///< [SI unit] no voxel is off by more; nor is the spline anywhere
+  double error = 0.0;  ///< [SI unit] no voxel is off by more than this, nor is the spline anywhere
 };
 
 /// How a material grid is stored, for reports.
 struct MaterialGridInfo {
-  std::string source;         ///< what it was made from, for reports
+  std::string source;         ///< the file or image it was made from, for reports
   std::array<int, 3> size{};  ///< voxels
   double voxel_size = 0.0;    ///< [m] the shortest step from voxel to voxel
   Box3 bounds;                ///< [m] of the voxels' centers
@@ -39,21 +39,21 @@ struct MaterialGridInfo {
   std::uint64_t memory = 0;   ///< [bytes]
 };
 
-/// A map out of voxels: a quadratic B-spline whose coefficients are the voxels themselves, so that
+/// A map from voxels: a quadratic B-spline whose coefficients are the voxels themselves, so that
 /// its values stay between those of the nearest 27 voxels, value and gradient are continuous
-/// everywhere, and what is linear from voxel to voxel is met exactly. It does not pass through the
-/// voxels: over a curved run it is off by up to an eighth of the second difference. From half a
-/// voxel beyond the outermost centers on it is constant. Reading allocates nothing and takes some
-/// 90 ns.
+/// everywhere, and values that are linear from voxel to voxel are reproduced exactly. It does not
+/// pass through the voxels: where values curve, it is off by up to an eighth of the second
+/// difference. Beyond half a voxel outside the outermost centers it is constant. Reading allocates
+/// nothing and takes some 90 ns.
 class PALPATE_EXPORT MaterialGrid final : public MaterialMap {
  public:
-  /// Values in an image's order and place [SI unit]. What is NaN takes the mean of its neighbors,
-  /// from the known voxels outwards. Stored in as few bits as put no voxel off by more than
+  /// Values in an image's order and place [SI unit]. A NaN voxel takes the mean of its neighbors,
+  /// from the known voxels outwards. Stored in the fewest bits that put no voxel off by more than
   /// `tolerance` [SI unit]; 0: as floats. `max_memory` [bytes], 0: no limit.
   /// @throws Error (kInput) for no voxel that is a number; kOperation for memory.
   MaterialGrid(Image voxels, double tolerance, std::uint64_t max_memory = 0);
-  /// As they were stored before: if every voxel is just one of `known`'s steps, they are stored so
-  /// again.
+  /// With the quantization of an earlier run: if every voxel is exactly one of the steps of
+  /// `known`, voxels are stored in these steps again.
   MaterialGrid(Image voxels, double tolerance, const Quantisation& known,
                std::uint64_t max_memory = 0);
   ~MaterialGrid() override;
@@ -78,15 +78,15 @@ class PALPATE_EXPORT MaterialGrid final : public MaterialMap {
 
   MaterialGridInfo info_;
   Range range_;
-  Mat3 axes_{1.0};            // as the image's
+  Mat3 axes_{1.0};            // the image's
   Vec3 origin_{0.0};          // [m]
   Mat3 to_index_{1.0};        // [1/m]
-  Mat3 to_world_slope_{1.0};  // the gradient by voxels to the gradient by meters
+  Mat3 to_world_slope_{1.0};  // turns the gradient per voxel into the gradient per meter
   std::unique_ptr<const Blocks> blocks_;
 };
 using MaterialGridPtr = std::shared_ptr<const MaterialGrid>;  ///< shared and unchanging
 
-/// Piecewise linear, constant beyond its ends: pairs of an image's value and the parameter's [SI
+/// Piecewise linear, constant beyond its ends: pairs of an image value and a parameter value [SI
 /// unit], by rising image value.
 using Transfer = std::vector<std::pair<double, double>>;
 
@@ -97,7 +97,7 @@ using Transfer = std::vector<std::pair<double, double>>;
                                                                double tolerance,
                                                                std::uint64_t max_memory = 0);
 
-/// What is asked of a material grid in a file.
+/// Which material grid of a file to read, and how.
 struct MaterialGridRequest {
   std::string name;                    ///< may be empty if the file holds just one grid
   std::optional<Dimension> dimension;  ///< of the parameter; none: a ratio
@@ -107,8 +107,8 @@ struct MaterialGridRequest {
   std::uint64_t max_memory = 0;        ///< [bytes]
 };
 
-/// A fog volume of floats; any linear transform. Where it has no active voxel the nearest ones
-/// count.
+/// Reads a fog volume of floats, with any linear transform. Where the grid has no active voxel the
+/// nearest active ones count.
 /// @throws Error (kInput, "vdb.*"): no such grid, another type or class, no unit or one of another
 /// dimension, values that are not numbers, a transform that is not linear, ...
 [[nodiscard]] PALPATE_EXPORT MaterialGridPtr readMaterialGrid(const std::string& path,

@@ -1,6 +1,6 @@
 #pragma once
-/// The OpenVDB grid behind a LevelSet, for code that knows OpenVDB. Including this costs what
-/// openvdb/openvdb.h costs; palpate/vdb/level_set.h does not.
+/// The OpenVDB grid behind a LevelSet, for code that knows OpenVDB. This header includes
+/// openvdb/openvdb.h, with its compile time; palpate/vdb/level_set.h does not.
 
 #include <openvdb/openvdb.h>
 
@@ -23,9 +23,9 @@ struct LevelSet::Impl {
 PALPATE_EXPORT void initializeOpenVdb();
 
 /// Takes over `grid`: marks it as a level set, writes `length_unit`, the version of palpate and
-/// `metadata` into it, and looks at it once. Values and world coordinates must be in `length_unit`;
-/// inactive voxels must hold +background outside and -background inside. Nobody else may write to
-/// the grid's tree afterwards.
+/// `metadata` into it, and checks it once. Values and world coordinates must be in `length_unit`;
+/// inactive voxels must hold +background outside and -background inside. Afterwards nobody else may
+/// write to the grid's tree.
 /// @throws Error (kInput): unknown unit, background not positive, a transform that is not a
 /// positive uniform scale and a translation.
 [[nodiscard]] PALPATE_EXPORT LevelSet

@@ -1,5 +1,5 @@
 #pragma once
-/// What is wrong with the grids of a .vdb file.
+/// Finds defects in the grids of a .vdb file.
 
 #include <cstdint>
 #include <optional>
@@ -13,17 +13,17 @@
 
 namespace palpate::vdb {
 
-/// |gradient| by central differences at the active voxels whose six neighbors are active; 1
-/// everywhere where values are distances, less at edges and medial axes.
+/// |gradient| by central differences at the active voxels whose six neighbors are active. It is 1
+/// wherever values are distances, less at edges and medial axes.
 struct GradientStatistics {
-  std::uint64_t voxels = 0;  ///< looked at
+  std::uint64_t voxels = 0;  ///< that were measured
   double mean = 0.0;
   double deviation = 0.0;  ///< RMS of the difference to 1
-  double worst = 1.0;      ///< the one that is farthest from 1
+  double worst = 1.0;      ///< the value farthest from 1
   Vec3 worst_place{0.0};   ///< [m]
 };
 
-/// Voxels with something wrong, and one of them.
+/// Number of voxels with one kind of defect, and the place of one of them.
 struct VoxelDefect {
   std::uint64_t voxels = 0;
   Vec3 place{0.0};  ///< [m]
@@ -32,39 +32,41 @@ struct VoxelDefect {
 struct GridCheck {
   VdbGridSummary grid;
   std::optional<Problem> refused;  ///< why readVdb() does not take it
-  /// Whether what follows was looked at: floats that are, or may be, signed distances.
+  /// Whether the following fields were filled in: only for floats that are, or may be, signed
+  /// distances.
   bool has_distances = false;
   VoxelDefect not_finite;
   GradientStatistics gradient;
   std::uint64_t inside_voxels = 0;  ///< active and negative
-  /// Where inside and outside meet without a band in between: next to a negative voxel is a
-  /// positive one, and one of the two is not active. So ends a band whose inside holds the
-  /// outside's background, and one that was cut off.
+  /// Where inside and outside meet without a band in between: a positive voxel is next to a
+  /// negative one, and one of the two is not active. A band ends this way if its inside holds the
+  /// outside's background, or if it was cut off.
   VoxelDefect sign_breaks;
   /// Active voxels more than a voxel and a half within the band, with a neighbor that is not
   /// active.
   VoxelDefect band_holes;
-  double volume = 0.0;  ///< [m^3] of what is negative, voxels on the surface by their share
+  double volume = 0.0;  ///< [m^3] of the negative region, voxels on the surface by their share
   /// As the cubic sampler reads it, if it is not refused: why contact would not take it,
   std::optional<Problem> uncertified;
-  /// or what it relies on, and what is done to the grid first.
+  /// or the certificate that contact relies on, and what is done to the grid first.
   std::optional<BandCertificate> certificate;
   std::vector<std::string> repairs;
 };
 
-/// [m^3] of what is negative, voxels on the surface by their share.
+/// [m^3] of the negative region, voxels on the surface by their share.
 [[nodiscard]] double solidVolume(const LevelSet& grid);
 
-/// A level set whose inside is marked as such, and how many voxels that took.
+/// A level set with corrected signs inside, and how many voxels changed.
 struct MarkedInside {
   LevelSet grid;
   std::uint64_t voxels = 0;  ///< not active, and now on the other side than before
 };
 
-/// Mends the sign breaks of GridCheck: every voxel that is not active takes the side of the band
-/// that it is enclosed by. The band itself is kept, bit by bit. Without sign breaks, `grid` itself.
+/// Mends the sign breaks of GridCheck: every voxel that is not active takes the side of the part of
+/// the band that encloses it. The band itself is kept, bit by bit. Without sign breaks, `grid`
+/// itself.
 /// @throws Error (kInput, vdb.torn) naming a place where the band has a hole, or was cut off, so
-/// that inside and outside are one space; `path` is the file to name.
+/// that inside and outside are connected; `path` is the file to name.
 [[nodiscard]] MarkedInside withInsideMarked(const LevelSet& grid, const std::string& path = {});
 
 /// Every grid of the file; or only `name`, if it is not empty. Lengths of a grid without a unit are

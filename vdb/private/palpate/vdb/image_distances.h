@@ -8,17 +8,16 @@
 
 namespace palpate::vdb {
 
-/// The median length of the gradient [per m] in the voxels beside which the values change their
-/// sign, over all of the image; nothing if the values do not change their sign, or have none that
-/// is a number.
+/// The median length of the gradient [per m] over all voxels beside which the values change their
+/// sign; nothing if the values do not change their sign, or none of them is a number.
 [[nodiscard]] std::optional<double> slopeAtZero(const Image& image);
 
-/// Whether they look like signed distances in mm: both signs, and a slope of 1 within a fifth where
-/// they are zero.
+/// Whether the values look like signed distances in mm: both signs occur, and the slope where they
+/// are zero is 1 within a fifth.
 [[nodiscard]] bool looksLikeDistances(const Image& image);
 
-/// What is wrong with taking what is greater than a threshold for the inside of such an image.
-/// Empty: nothing.
+/// Why such an image should not be thresholded as "inside is greater". Empty: there is no
+/// objection.
 [[nodiscard]] std::string distancesNote(const Image& image);
 
 }  // namespace palpate::vdb

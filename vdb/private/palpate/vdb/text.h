@@ -1,6 +1,6 @@
 #pragma once
-/// Numbers, places and lists as messages show them, and words of files and paths as readers take
-/// them.
+/// Formats numbers, places and lists for messages, and takes words of files and paths apart for
+/// readers.
 
 #include <string>
 #include <string_view>
@@ -21,16 +21,16 @@ namespace palpate::vdb {
 /// "1, 5, 7"
 [[nodiscard]] std::string listOf(const std::vector<int>& labels);
 
-/// Without the blanks around it.
+/// Without the blanks at its ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
-/// With small letters for A to Z.
+/// With A to Z turned to lower case.
 [[nodiscard]] std::string lowerCase(std::string_view text);
 
-/// Whether `path` ends so, in whatever case.
+/// Whether `path` ends with `extension`, in upper or lower case.
 [[nodiscard]] bool hasExtension(std::string_view path, std::string_view extension);
-/// ".stl", in small letters; nothing if it has none.
+/// ".stl", in lower case; nothing if it has none.
 [[nodiscard]] std::string extensionOf(const std::string& path);
-/// Without its folders.
+/// The file's name without its folders.
 [[nodiscard]] std::string fileName(const std::string& path);
 
 }  // namespace palpate::vdb
