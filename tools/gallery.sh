@@ -29,8 +29,8 @@ scene() { # NAME TITLE NOTICE MOTION LOOK [PICTURE]
   # Words of options are told apart by blanks; none of them holds one.
   # shellcheck disable=SC2086
   if [ -n "$motion" ]; then
-    run touch $file $motion --trace @trace.csv
-    trace=(--trace @trace.csv)
+    run touch $file $motion --trace "@${picture%.*}.csv"
+    trace=(--trace "@${picture%.*}.csv")
   fi
   # shellcheck disable=SC2086
   run render $file "${trace[@]}" $look --size 960x600 -o "@$picture"
