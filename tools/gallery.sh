@@ -30,8 +30,8 @@ scene() { # NAME TITLE NOTICE MOTION LOOK [PICTURE]
   # Options are split at blanks; none of them contains a blank.
   # shellcheck disable=SC2086
   if [ -n "$motion" ]; then
-    run touch $file $motion --trace @trace.csv
-    trace=(--trace @trace.csv)
+    run touch $file $motion --trace "@${picture%.*}.csv"
+    trace=(--trace "@${picture%.*}.csv")
   fi
   # shellcheck disable=SC2086
   run render $file "${trace[@]}" $look --size 960x600 -o "@$picture"

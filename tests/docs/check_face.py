@@ -1,10 +1,11 @@
-"""What a visitor finds first is true: versions agree, links lead somewhere, issue forms and workflows can be read, and the
-workflows call scripts and lanes that exist."""
+"""What a visitor finds first is true: versions agree, links lead somewhere, command blocks are run or say why not, issue forms
+and workflows can be read, and the workflows call scripts and lanes that exist."""
 import re
 import subprocess
 import unittest
 from pathlib import Path
 
+import run_blocks
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,6 +40,19 @@ def broken_links(path):
             yield target
 
 
+def is_run(page):
+    """Whether a test runs the command blocks of a page (CMakeLists.txt), or the script that writes the page does."""
+    name = str(page.relative_to(ROOT))
+    return name in ("README.md", "data/README.md", "tools/docs/gallery.md") or (
+        name.startswith(("tools/docs/tutorials/", "tools/docs/theory/")) and page.name != "README.md")
+
+
+def blocks_nobody_runs(page):
+    for block in run_blocks.blocks_of(page.read_text()):
+        if block.language in run_blocks.RUN and not {"shown only", "file"} & block.marks.keys():
+            yield f"line {block.line}: {block.text.splitlines()[0]}"
+
+
 class Face(unittest.TestCase):
     def test_versions_agree(self):
         version = re.search(r"project\(palpate VERSION (\S+)", text_of("CMakeLists.txt"))[1]
@@ -60,6 +74,14 @@ class Face(unittest.TestCase):
         page = ROOT / "tests/docs/README.md"
         self.assertEqual(anchors_of("# One `two`, 3\n```sh\n# no heading\n```\n"), {"one-two-3"})
         self.assertEqual(list(broken_links(page)), [])
+
+    def test_each_command_block_is_run_or_says_why_not(self):
+        for page in documents():
+            if not is_run(page):
+                self.assertEqual(list(blocks_nobody_runs(page)), [], page)
+
+    def test_a_block_that_nobody_runs_is_seen(self):
+        self.assertGreater(len(list(blocks_nobody_runs(ROOT / "tools/docs/gallery.md"))), 10)
 
     def test_issue_forms_have_all_that_they_require(self):
         forms = [form for form in (ROOT / ".github/ISSUE_TEMPLATE").glob("*.yml") if form.name != "config.yml"]

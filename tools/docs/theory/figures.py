@@ -62,7 +62,8 @@ def plot(name, about, x_label, y_label, lines, log=(False, False), bounds=(None,
     """`lines`: (label, points, dashed or not[, with dots]); a label of None is not in the legend."""
     x = Axis([p[0] for line in lines for p in line[1]], log[0], LEFT, WIDTH - RIGHT, bounds[0])
     y = Axis([p[1] for line in lines for p in line[1]], log[1], height - BOTTOM, TOP, bounds[1])
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" font-family="sans-serif" font-size="12">',
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" '
+           'font-family="sans-serif" font-size="12">',
            f"<title>{about}</title>", f'<rect width="{WIDTH}" height="{height}" fill="#ffffff"/>',
            '<g stroke="#dddddd">']
     out += [f'<path d="M{x.at(t):.1f} {TOP}V{height - BOTTOM}"/>' for t in x.ticks]
@@ -121,7 +122,8 @@ def direction(trace):
 
 
 def contact(palpate):
-    scene = palpate.file("box.yaml", "{palpate: 1, length: mm, layers: [{name: box, inside: {box: {center: [0, 0, 0], size: [40, 40, 40]}}}]}")
+    scene = palpate.file("box.yaml", "{palpate: 1, length: mm, "
+                         "layers: [{name: box, inside: {box: {center: [0, 0, 0], size: [40, 40, 40]}}}]}")
     trace = palpate.touch(scene, "--insert", "-15,0,26", "-12,0,17", "25,0,17", "25,0,2", "14,0,-2", "14,0,-16")
     box = [(-20, -20), (-20, 20), (20, 20), (20, -20)]
     lines = [("hand", list(zip(1e3 * trace["hip_x"], 1e3 * trace["hip_z"])), True),
@@ -138,12 +140,14 @@ def force(palpate):
     strength = numpy.sqrt(sum(trace[f"force_{a}"] ** 2 for a in "xyz"))
     apart = numpy.sqrt(sum((trace[f"proxy_{a}"] - trace[f"hip_{a}"]) ** 2 for a in "xyz"))
     plot("force", "The force along a stroke below a groove of two stiffnesses", "x of the hand, mm", "force, N",
-         [("felt", list(zip(x, strength)), False), ("1000 N/m times the way to the proxy", list(zip(x, 1e3 * apart)), True),
+         [("felt", list(zip(x, strength)), False),
+          ("1000 N/m times the way to the proxy", list(zip(x, 1e3 * apart)), True),
           ("3000 N/m times that", list(zip(x, 3e3 * apart)), True)])
 
 
 def friction(palpate):
-    scene = palpate.file("rough.yaml", """{palpate: 1, length: mm, materials: {felt: {stiffness: 1000 N/m, friction: {static: 0.4, kinetic: 0.25}}},
+    scene = palpate.file("rough.yaml", """{palpate: 1, length: mm,
+      materials: {felt: {stiffness: 1000 N/m, friction: {static: 0.4, kinetic: 0.25}}},
       layers: [{name: floor, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: felt}]}""")
     trace = palpate.touch(scene, "--insert", "0,0,3", "0,0,-2", "4,0,-2", "2,0,-2", "--speed", "10mm/s")
     trace = trace[trace["hip_z"] < -1.9999e-3]
@@ -160,28 +164,40 @@ def needle(palpate):
     trace = palpate.touch(SCENES / "slab.yaml", "--insert", "0,0,5", "0,0,-25", "--back", "--speed", "10mm/s")
     turn = numpy.argmin(trace["hip_z"])
     pushed = list(zip(-1e3 * trace["hip_z"], trace["force_z"]))
-    plot("needle", "A needle goes through skin, fat and muscle, and is drawn out", "depth of the hand, mm", "force against the way in, N",
-         [("in", pushed[:turn], False), ("out", pushed[turn:], False)])
+    plot("needle", "A needle goes through skin, fat and muscle, and is drawn out", "depth of the hand, mm",
+         "force against the way in, N", [("in", pushed[:turn], False), ("out", pushed[turn:], False)])
+
+
+def around(radius, degrees, y=0):
+    """The point of a circle about the y axis, as the command takes it."""
+    return f"{radius * math.sin(math.radians(degrees))},{y},{radius * math.cos(math.radians(degrees))}"
+
+
+def stroke_over(palpate, scene, options, radius, most, y=0):
+    """A stroke from -most to most [degrees] along a circle of `radius`: direction of the hand, and of the force."""
+    arc = [around(radius, degrees, y) for degrees in numpy.arange(-most, most + 0.1, 1)]
+    trace = palpate.touch(scene, *options, "--insert", around(radius + 7, -most, y), *arc, "--speed", "20mm/s")
+    trace = trace[trace["contact"] == 1]
+    angle = numpy.degrees(numpy.arctan2(trace["hip_x"], trace["hip_z"]))
+    inside = numpy.abs(angle) < most - 5
+    return angle[inside], direction(trace)[inside]
 
 
 def shading(palpate):
     faces = []
     for n in range(24):
-        a = 2.0 * math.pi * (n + 0.5) / 24
-        faces.append(f"{{half_space: {{point: [{20 * math.sin(a)}, 0, {20 * math.cos(a)}], normal: [{math.sin(a)}, 0, {math.cos(a)}]}}}}")
+        x, z = math.sin(math.radians(15 * n + 7.5)), math.cos(math.radians(15 * n + 7.5))
+        faces.append(f"{{half_space: {{point: [{20 * x}, 0, {20 * z}], normal: [{x}, 0, {z}]}}}}")
     lines = []
-    for label, shade in (("24 flat facets", 0), ("the same with `shading: 5`", 5)):
-        scene = palpate.file("prism.yaml", f"""{{palpate: 1, length: mm, materials: {{wood: {{stiffness: 1000 N/m, shading: {shade}}}}},
-          layers: [{{name: prism, inside: {{intersection: [{", ".join(faces)}, {{box: {{center: [0, 0, 0], size: [60, 60, 60]}}}}]}}, wall: wood}}]}}""")
-        arc = [f"{18.5 * math.sin(a)},0,{18.5 * math.cos(a)}" for a in numpy.radians(numpy.arange(-40, 41, 2))]
-        trace = palpate.touch(scene, "--insert", f"{25 * math.sin(math.radians(-40))},0,{25 * math.cos(math.radians(-40))}", *arc, "--speed", "20mm/s")
-        trace = trace[trace["contact"] == 1]
-        angle = numpy.degrees(numpy.arctan2(trace["hip_x"], trace["hip_z"]))
-        inside = (angle > -30) & (angle < 30)
-        lines.append((label.replace("`", ""), list(zip(angle[inside], direction(trace)[inside])), False))
+    for label, shade in (("24 flat facets", 0), ("the same with shading: 5", 5)):
+        scene = palpate.file("prism.yaml", f"""{{palpate: 1, length: mm,
+          materials: {{wood: {{stiffness: 1000 N/m, shading: {shade}}}}},
+          layers: [{{name: prism, inside: {{intersection: [{", ".join(faces)},
+            {{box: {{center: [0, 0, 0], size: [60, 60, 60]}}}}]}}, wall: wood}}]}}""")
+        lines.append((label, list(zip(*stroke_over(palpate, scene, [], 18.5, 35))), False))
     lines.append(("a round rod", [(-30, -30), (30, 30)], True))
-    plot("shading", "The direction of the force on a stroke round a prism of 24 facets", "direction of the hand, degree",
-         "direction of the force, degree", lines)
+    plot("shading", "The direction of the force on a stroke round a prism of 24 facets",
+         "direction of the hand, degree", "direction of the force, degree", lines)
 
 
 def sampling(palpate):
@@ -195,11 +211,12 @@ def sampling(palpate):
                 if each["sampler"] == sampler:
                     points.append((1e3 * grid["voxel_size_m"], each["smooth"]["normal_error_degrees"]["rms"]))
         lines.append((sampler, points, False, True))
-    plot("sampling", "Error of the normal over the voxel size, torus of 35 and 15 mm", "voxel, mm", "error of the normal, degree RMS",
-         lines, log=(True, True))
+    plot("sampling", "Error of the normal over the voxel size, torus of 35 and 15 mm", "voxel, mm",
+         "error of the normal, degree RMS", lines, log=(True, True))
 
 
-CUBE = """v -20 -20 -20\nv 20 -20 -20\nv 20 20 -20\nv -20 20 -20\nv -20 -20 20\nv 20 -20 20\nv 20 20 20\nv -20 20 20
+CUBE = """v -20 -20 -20\nv 20 -20 -20\nv 20 20 -20\nv -20 20 -20
+v -20 -20 20\nv 20 -20 20\nv 20 20 20\nv -20 20 20
 f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"""
 
 
@@ -208,17 +225,20 @@ def meshes(palpate):
     lines = []
     for label, keys in (("flat faces as they are", ""), ("a grid of 1 mm", ", edges: rounded, voxel: 1"),
                         ("a grid of 2 mm", ", edges: rounded, voxel: 2")):
-        scene = palpate.file("cube.yaml", f"{{palpate: 1, length: mm, layers: [{{name: cube, inside: {{mesh: {{file: cube.obj{keys}}}}}}}]}}")
+        scene = palpate.file("cube.yaml", "{palpate: 1, length: mm, "
+                             f"layers: [{{name: cube, inside: {{mesh: {{file: cube.obj{keys}}}}}}}]}}")
         trace = palpate.touch(scene, "--insert", "10,3,24", "10,3,19", "19.9,3,19", "--speed", "10mm/s")
         trace = trace[(trace["hip_z"] < 19.0001e-3) & (trace["proxy_x"] > 16e-3)]
         lines.append((label, list(zip(1e3 * trace["proxy_x"], 1e3 * trace["proxy_z"])), False))
-    plot("meshes", "The way of the proxy on the top of a cube to its edge", "x of the proxy, mm", "z of the proxy, mm", lines,
-         bounds=((16, 21), (19, 20.5)))
+    plot("meshes", "The way of the proxy on the top of a cube to its edge", "x of the proxy, mm",
+         "z of the proxy, mm", lines, bounds=((16, 21), (19, 20.5)))
 
 
 def implicit(palpate):
-    grid = palpate.file("heart.yaml", "{palpate: 1, length: mm, fields: {heart: {heart: {center: [0, 0, 0], width: 60}}}, "
-                        "layers: [{name: heart, inside: heart}, {name: grid, inside: {baked: {field: heart, voxel: 0.5, half_width: 24, parts: whole}}}]}")
+    grid = palpate.file("heart.yaml", """{palpate: 1, length: mm,
+      fields: {heart: {heart: {center: [0, 0, 0], width: 60}}},
+      layers: [{name: heart, inside: heart},
+        {name: grid, inside: {baked: {field: heart, voxel: 0.5, half_width: 24, parts: whole}}}]}""")
     heights = [20 + 0.25 * n for n in range(57)]
     points = "x,y,z\n" + "\n".join(f"15,0,{z}" for z in heights) + "\n"
     palpate.file("points.csv", points)
@@ -228,27 +248,23 @@ def implicit(palpate):
         for field in point["fields"]:
             if field["name"] in values and field["in_band"]:
                 values[field["name"]].append((z, field["value"]))
-    plot("implicit", "The heart's own function and the distance that a grid of it holds", "z, mm, at x = 15 mm", "value, mm",
-         [("the function", values["heart"], False), ("its grid: the distance", values["grid"], True)])
+    plot("implicit", "The heart's own function and the distance that a grid of it holds", "z, mm, at x = 15 mm",
+         "value, mm", [("the function", values["heart"], False), ("its grid: the distance", values["grid"], True)])
 
 
 def labels(palpate):
-    n = 64
-    axes = numpy.arange(n) - (n - 1) / 2.0
-    ball = (axes[:, None, None] ** 2 + axes[None, :, None] ** 2 + axes[None, None, :] ** 2 < 20.3**2).astype(numpy.uint8)
+    axes = numpy.arange(64) - 31.5  # [mm] of voxel centers
+    x, y, z = axes[:, None, None], axes[None, :, None], axes[None, None, :]
+    ball = (x * x + y * y + z * z < 20.3**2).astype(numpy.uint8)
     affine = numpy.eye(4)
-    affine[:3, 3] = -(n - 1) / 2.0
+    affine[:3, 3] = axes[0]
     image = nibabel.Nifti1Image(ball, affine)
     image.header.set_xyzt_units("mm")
     image.to_filename(palpate.folder / "ball.nii.gz")
     lines = []
     for label, how in (("a threshold of the same voxels", ["--above", "0.5"]), ("the label", ["--labels", "1"])):
-        arc = [f"{19 * math.sin(a)},0.3,{19 * math.cos(a)}" for a in numpy.radians(numpy.arange(-25, 25.1, 1))]
-        trace = palpate.touch("ball.nii.gz", *how, "--insert", f"{26 * math.sin(math.radians(-25))},0.3,{26 * math.cos(math.radians(-25))}", *arc, "--speed", "20mm/s")
-        trace = trace[trace["contact"] == 1]
-        angle = numpy.degrees(numpy.arctan2(trace["hip_x"], trace["hip_z"]))
-        inside = (angle > -20) & (angle < 20)
-        lines.append((label, list(zip(angle[inside], (direction(trace) - angle)[inside])), False))
+        hand, force_at = stroke_over(palpate, "ball.nii.gz", how, 19, 25, y=0.3)
+        lines.append((label, list(zip(hand, force_at - hand)), False))
     plot("labels", "The direction of the force on a stroke over a ball made of voxels", "direction of the hand, degree",
          "force off the ball's, degree", lines)
 
@@ -256,15 +272,15 @@ def labels(palpate):
 def energy(palpate):
     points = []
     for speed in (100, 50, 20, 10, 5, 2, 1):
-        report = palpate.json("touch", SCENES / "crease.yaml", "--insert", "0,0,6", "1.2,0,-2", "0,0,-0.8", "-1.2,0,-2", "0,0,-3.2", "1.2,0,-2",
-                              "0,0,6", "--speed", f"{speed}mm/s")
+        report = palpate.json("touch", SCENES / "crease.yaml", "--insert", "0,0,6", "1.2,0,-2", "0,0,-0.8", "-1.2,0,-2",
+                              "0,0,-3.2", "1.2,0,-2", "0,0,6", "--speed", f"{speed}mm/s")
         points.append((speed, 1e3 * report["work_on_hand_J"]))
-    plot("energy", "Work of the held forces on a hand that goes round a closed way", "speed of the hand, mm/s, at 1 kHz", "work on the hand, mJ",
-         [("of the held forces", points, False, True)], log=(True, True))
+    plot("energy", "Work of the held forces on a hand that goes round a closed way",
+         "speed of the hand, mm/s, at 1 kHz", "work on the hand, mJ", [("of the held forces", points, False, True)], log=(True, True))
 
 
 def falcon_slope(p):
-    """Rows: d angle / d position of the three thighs (Stamper 1997, eq. 3.1 to 3.9), as devices/src/falcon/kinematics.cpp has it."""
+    """Rows: d angle / d position of the three thighs (Stamper 1997, equations 3.1 to 3.9), as kinematics.cpp has it."""
     a, b, c, d, f, r, s = 0.060, 0.1025, 0.01443, 0.0225, -0.025, 0.0400, -0.02309
     rows = []
     for degrees in (105, -15, -135):
@@ -283,7 +299,7 @@ def falcon_slope(p):
         shin = math.atan2(w - a * math.sin(angle), across - a * math.cos(angle))
         bend = a * sine * math.sin(shin - angle)
         along = (math.cos(shin) * sine, math.sin(shin) * sine)
-        rows.append([(along[0] * ca - tilt * sa) / bend, (along[0] * sa + tilt * ca) / bend, along[1] / bend])
+        rows.append(numpy.array([along[0] * ca - tilt * sa, along[0] * sa + tilt * ca, along[1]]) / bend)
     return numpy.array(rows)
 
 
@@ -298,7 +314,8 @@ def kinematics(_palpate):
                 if values[0] / values[-1] < 10.0:
                     points.append((n, values[0] / values[-1]))
         lines.append((f"z = {z} mm", points, False))
-    plot("kinematics", "How uneven the arms of a Falcon are", "x of the grip, mm", "largest over smallest singular value", lines)
+    plot("kinematics", "How uneven the arms of a Falcon are", "x of the grip, mm",
+         "largest over smallest singular value", lines)
 
 
 FIGURES = (contact, force, friction, ports, needle, shading, sampling, meshes, implicit, labels, energy, kinematics)
