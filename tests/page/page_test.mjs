@@ -1,4 +1,4 @@
-// The page of `palpate view` in a browser without a window: what it shows, who steers, and what is felt on the way.
+// The page of `palpate view` in a headless browser: what it shows, which page steers, and the forces on the way.
 //   node tests/page/page_test.mjs PALPATE PAGE_FOLDER OUT_FOLDER [NAME...]
 // PAGE_FOLDER holds the node_modules that tools/page/build.sh has installed; OUT_FOLDER gets the pictures. NAME: only these tests.
 import assert from "node:assert/strict";
@@ -18,7 +18,7 @@ const scene = (name) => path.join(root, "data/scenes", `${name}.yaml`);
 
 /** `palpate view` as it runs. */
 class Served {
-  /** Those that run; a test that fails leaves its own behind. */
+  /** The running ones; a test that fails does not stop its own. */
   static running = new Set();
 
   constructor(...options) {
@@ -46,7 +46,7 @@ class Served {
 }
 
 let browser;
-const asked = []; // addresses that are not the server's
+const asked = []; // requested addresses that are not the server's
 
 async function open(served) {
   const url = await served.url;
@@ -65,13 +65,13 @@ async function open(served) {
   return page;
 }
 
-/** A few more pictures, and what the server says by then. */
+/** Waits for a few more frames, so that the latest data of the server are shown. */
 async function settle(page, frames = 3) {
   const from = await page.evaluate(() => window.palpatePage.space.frames);
   await page.waitForFunction(([first, more]) => window.palpatePage.space.frames >= first + more, [from, frames]);
 }
 
-/** How much of the scene's picture is not the ground, and how many colors it has. */
+/** The share of the scene's picture that is not background, and its number of colors. */
 function look(page) {
   return page.evaluate(() => {
     const space = document.getElementById("space");
@@ -103,7 +103,7 @@ async function picture(page, name) {
 
 const tick = (page) => page.evaluate(() => window.palpatePage.last.tick);
 
-/** The number of the state that Table I has for a probe there, and nothing else: the sphere A and the half-space B. */
+/** The number of the state in Table I for a probe at this place, by the sphere A and the half-space B alone. */
 function stateOf([x, y, z]) {
   const a = Math.hypot(x, y, z) < 0.04;
   const b = z < 0.015;
@@ -127,14 +127,14 @@ const tests = {
       const strength = Math.hypot(...now.force);
       if (states.at(-1) !== state) states.push(state);
       if (regions.at(-1) !== now.region) regions.push(now.region);
-      // What Table I says of the state: nothing is felt in 2 and 4, ...
+      // The forces by Table I: none in the states 2 and 4, ...
       if (state === 4) assert.ok(strength < 1e-9 && now.region === 0, JSON.stringify(now));
       if (state === 2 && now.region === 0) assert.ok(strength < 1e-9, JSON.stringify(now));
       if (state === 1) assert.equal(now.region, 1);
-      // ... and in 3, after ENTER_PORT, the wall from within: inward, here upward.
+      // ... and in state 3, after ENTER_PORT, that of the wall from within: inward, which is upward here.
       if (state === 3) assert.ok(now.region === 1 && now.contact && now.force[2] > 0, JSON.stringify(now));
     };
-    // The hand begins where the scene is looked at from, which may be in any state.
+    // The hand begins at the viewpoint of the scene, which may be in any state.
     await page.evaluate(() => {
       window.palpatePage.told = [0, 0, 0.06];
       window.palpatePage.changed();
@@ -152,7 +152,7 @@ const tests = {
       await page.waitForFunction((before) => window.palpatePage.last.tick.n > before + 30, n, { polling: 5 });
       note(await tick(page));
       if (i === moves / 2) {
-        // The hand is held back by the force: it is not where it is led.
+        // The force holds the hand back: it is not where the page leads it.
         const now = await tick(page);
         assert.ok(now.hip[2] > now.told[2] + 1e-3, JSON.stringify(now));
         assert.ok(now.wall.startsWith("glass"), now.wall);
@@ -167,7 +167,7 @@ const tests = {
     assert.match(log[1], /outside to liquid through mouth/);
     assert.match(log[0], /liquid to outside through mouth/);
 
-    // The server's end is told, and what was recorded is felt anew bit for bit.
+    // The page reports the end of the server, and the record replays bit for bit.
     assert.equal(await served.stop(), 130);
     await page.locator("#notice").waitFor({ state: "visible" });
     assert.match(await page.locator("#notice").textContent(), /has ended/);
@@ -194,7 +194,7 @@ const tests = {
     await hold("PageDown", (y) => window.palpatePage.told[1] > y + 0.005, before[1]);
     await page.keyboard.press("Home");
     assert.deepEqual(await told(), await page.evaluate(() => window.palpatePage.start));
-    // Each control can be reached, in an order that ends where it began.
+    // Each control can be reached by the keyboard, in an order that ends where it began.
     const reached = new Set();
     for (let i = 0; i < 40; ++i) {
       await page.keyboard.press("Tab");
@@ -205,7 +205,7 @@ const tests = {
     await page.keyboard.press("Enter");
     assert.match(await page.locator("#lines").textContent(), /palpate: 1/);
     await picture(page, "container-text");
-    // A layer is switched off by its box.
+    // Its check box switches a layer off.
     await page.locator("#layer-1").focus();
     await page.keyboard.press("Space");
     await settle(page);
@@ -293,7 +293,7 @@ const tests = {
     for (const ink of ["ink", "faint"]) assert.ok(contrast(get(ink), get("panel")) >= 4.5, ink);
     const marks = ["hip", "proxy", "force", "told"];
     for (const mark of marks) assert.ok(contrast(get(mark), get("ground")) >= 3, mark);
-    // Marks stay apart for each kind of color blindness: Machado, Oliveira and Fernandes 2009, complete.
+    // Marks are distinguishable with each kind of complete color blindness: Machado, Oliveira and Fernandes 2009.
     const blind = {
       protan: [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
       deutan: [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
@@ -314,7 +314,7 @@ const tests = {
         for (const b of marks) {
           if (a >= b) continue;
           const [p, q] = [seen(a), seen(b)];
-          // Ten times what the eye can just tell apart side by side (about 2.3).
+          // Ten times the difference that is just visible side by side (about 2.3).
           const apart = Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
           assert.ok(apart >= 23, `${a} and ${b} for ${kind}: ${apart}`);
         }

@@ -1,4 +1,4 @@
-// What `palpate view` is made of: surfaces, the hand that a page moves, recorded runs, and the desk
+// The parts of `palpate view`: surfaces, the hand that a page moves, recorded runs, and the desk
 // that answers pages.
 
 #include <gtest/gtest.h>
@@ -40,7 +40,8 @@ double volumeOf(const SurfaceNet& net) {
   return volume;
 }
 
-/// How often each edge is there, one way less the other; a closed surface has none but zeros.
+/// How many more times each edge is used in one direction than in the other; all zero for a closed
+/// surface.
 int openEdges(const SurfaceNet& net) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& t : net.triangles) {
@@ -63,11 +64,11 @@ TEST(SurfaceNet, ASphereIsClosedOnTheSphereAndSeenFromOutside) {
   EXPECT_EQ(openEdges(net), 0);
   for (std::size_t i = 0; i < net.points.size(); ++i) {
     const Vec3 from_center = net.points[i] - Vec3(0.01, -0.02, 0.003);
-    // Newton's method ends within rounding.
+    // Newton's method converges to rounding.
     EXPECT_NEAR(glm::length(from_center), radius, 1e-12);
     EXPECT_NEAR(glm::dot(net.normals[i], from_center) / radius, 1.0, 1e-12);
   }
-  // Chords lie within the sphere, no further than the error says.
+  // Chords lie inside the sphere, by no more than the stated error.
   const double whole = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
   const double area = 4.0 * std::numbers::pi * radius * radius;
   EXPECT_LT(volumeOf(net), whole);
@@ -127,11 +128,12 @@ TEST(SteeredHand, GoesThereSmoothlyAndNoFasterThanAHand) {
     EXPECT_GE(now.x, last.x);
     last = now;
   }
-  // 0.1 m take 0.2 s at most by the speed; what is left shrinks by e each kTime.
+  // At the limit of speed 0.1 m take 0.2 s; the remaining distance shrinks by a factor of e each
+  // kTime.
   EXPECT_NEAR(last.x, 0.1, 0.1 * std::exp(-(2.0 - 0.2) / SteeredHand::kTime) + 1e-12);
   hand.steer(Vec3(NAN, 0.0, 0.0));
   EXPECT_NEAR(hand.at(2.1).x, 0.1, 1e-9);
-  // A machine that slept does not make the hand leap.
+  // After the machine has slept, the hand does not jump.
   hand.steer(Vec3(0.0));
   EXPECT_GE(hand.at(100.0).x, 0.1 - SteeredHand::kSpeed * SteeredHand::kLongest - 1e-9);
 }
@@ -140,7 +142,7 @@ TEST(SteeredHand, TheServoThreadNeitherWaitsNorAllocatesWhileItIsToldThings) {
   SteeredHand hand(Vec3(0.0));
   std::atomic<bool> stop{false};
   std::thread teller([&] {
-    // Both ends of one line: a mixture of two would be off it.
+    // Both targets are on one line: a mixture of two would be off it.
     for (int i = 0; !stop.load(); ++i) hand.steer(i % 2 == 0 ? Vec3(1.0) : Vec3(-1.0));
   });
   bool is_on_line = true;
@@ -159,7 +161,7 @@ TEST(SteeredHand, TheServoThreadNeitherWaitsNorAllocatesWhileItIsToldThings) {
   EXPECT_EQ(violations, 0);
 }
 
-/// Into the container through its mouth, against its bottom, and out again.
+/// A record of a path into the container through its mouth, against its bottom, and out again.
 class ViewedRecord : public ::testing::Test {
  protected:
   ViewedRecord() {
@@ -198,7 +200,7 @@ TEST_F(ViewedRecord, ARecordAndATraceAreTheSameRun) {
   EXPECT_EQ(end.entries[0].to, 1);
   EXPECT_EQ(end.entries[1].to, kOutside);
   EXPECT_EQ(end.passed, std::vector<int>{0});
-  // In the middle it is within.
+  // In the middle of the record the proxy is inside.
   const FeedView middle = record.at(record.size() / 2, 0);
   EXPECT_EQ(middle.passed, std::vector<int>{1});
   EXPECT_TRUE(middle.result.contact);
@@ -206,7 +208,7 @@ TEST_F(ViewedRecord, ARecordAndATraceAreTheSameRun) {
   const std::vector<double> overview = record.overview(10);
   ASSERT_EQ(overview.size(), 10U);
   EXPECT_EQ(overview.front(), 0.0);
-  EXPECT_GT(*std::max_element(overview.begin(), overview.end()), 7.0);  // 5 mm of 1500 N/m
+  EXPECT_GT(*std::max_element(overview.begin(), overview.end()), 7.0);  // 5 mm at 1500 N/m
 }
 
 TEST_F(ViewedRecord, AnotherSceneOrAnotherFileIsAnError) {
@@ -238,7 +240,7 @@ TEST_F(ViewedRecord, ThePageGoesThroughItRowByRow) {
   EXPECT_EQ(shown()["tick"]["entries"].size(), 1U);
   host.command(R"({"row":999999999})");
   EXPECT_EQ(shown()["row"], run.size() - 1);
-  // What is not a command changes nothing.
+  // A text that is not a command changes nothing.
   for (const char* broken : {"", "{", "[]", "null", R"({"row":-1})", R"({"row":"1"})",
                              R"({"to":[1,2]})", R"({"to":[1,2,"x"]})", R"({"to":[1e999,0,0]})"}) {
     host.command(broken);

@@ -1,4 +1,4 @@
-// The server of `palpate view`: whom it answers, and what it bears.
+// The server of `palpate view`: the requests that it answers, and the abuse that it survives.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ constexpr std::array<PageFile, 2> kFiles = {
     {{"index.html", "text/html; charset=utf-8", "<p>the page</p>"},
      {"page.js", "text/javascript; charset=utf-8", "let page;"}}};
 
-/// A host that notes what it is asked.
+/// A host that records the calls to it.
 class NotingHost {
  public:
   [[nodiscard]] PageHost host() {
@@ -79,7 +79,7 @@ struct Served {
   }
 };
 
-/// Hears until a message has `part` in it; false if the line ends before.
+/// Reads messages until one contains `part`; false if the connection ends before.
 bool hearsOf(PageLine& line, const std::string& part) {
   while (const auto text = line.hear()) {
     if (text->find(part) != std::string::npos) return true;
@@ -97,7 +97,7 @@ TEST(PageRequests, OnlyThePagesOwnAreServed) {
   EXPECT_EQ(verdict(target, "127.0.0.1:4000", ""), PageVerdict::kServe);
   EXPECT_EQ(verdict(target, "localhost:4000", "http://localhost:4000"), PageVerdict::kServe);
   EXPECT_EQ(decide({target, "127.0.0.1:4000", "", false}, token, 4000).path, "a.js");
-  // A name that somebody made lead to this machine.
+  // Foreign names that somebody has made resolve to this machine.
   for (const char* host :
        {"evil.example:4000", "127.0.0.1", "127.0.0.1:4001", "", "127.0.0.1.evil:4000"}) {
     EXPECT_EQ(verdict(target, host, ""), PageVerdict::kForeignHost) << host;
@@ -106,7 +106,7 @@ TEST(PageRequests, OnlyThePagesOwnAreServed) {
                              "http://127.0.0.1:4001", "http://127.0.0.1:40000"}) {
     EXPECT_EQ(verdict(target, "127.0.0.1:4000", origin), PageVerdict::kForeignOrigin) << origin;
   }
-  // No browser opens a WebSocket without saying whose page asks.
+  // Every browser states the origin of the page when it opens a WebSocket.
   EXPECT_EQ(verdict(target, "127.0.0.1:4000", "", true), PageVerdict::kForeignOrigin);
   EXPECT_EQ(verdict(target, "127.0.0.1:4000", "http://127.0.0.1:4000", true), PageVerdict::kServe);
   for (const std::string& wrong :
@@ -149,7 +149,7 @@ TEST(PageServer, RefusesWhoIsNotItsPage) {
     EXPECT_EQ(refused.status, 403);
     EXPECT_EQ(refused.body.find("page</p>"), std::string::npos);
   }
-  // Two names of the host mean neither.
+  // With two Host headers neither counts.
   PageSocket doubled(served.server.port());
   EXPECT_EQ(doubled.get(served.below(""), served.host() + "\r\nHost: evil.example").status, 403);
   EXPECT_FALSE(PageLine(served.server.port()).open(std::string(32, '0')));
@@ -175,7 +175,8 @@ TEST(PageServer, AnswersNothingButGetAndHead) {
   PageSocket post(served.server.port());
   post.send("POST " + served.below("") + " HTTP/1.1\r\nHost: " + served.host() +
             "\r\nContent-Length: 5\r\n\r\nhello");
-  // A body is more than it reads: it hangs up, or says that there is nothing.
+  // The server does not read bodies: it closes the connection, or answers that there is no such
+  // page.
   const auto after = post.get(served.below("page.js"), served.host());
   EXPECT_NE(after.body, "let page;");
   PageSocket deletes(served.server.port());
@@ -198,13 +199,13 @@ TEST(PageServer, OnePageSteersAndOthersWatch) {
   second.say(R"({"steer":false})");
   first->say(R"({"to":[1,1,1]})");
   ASSERT_TRUE(waitUntil([&] { return !served.notes.commands().empty(); }));
-  // What the second one said came before or not at all: it hears that it does not steer, after all
-  // of it was read.
+  // The second page's commands were read before, and dropped. Make sure that they were all read: it
+  // now receives messages that it does not steer.
   second.say("x");
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(second.hear().has_value());
   EXPECT_EQ(served.notes.commands(), std::vector<std::string>{R"({"to":[1,1,1]})"});
 
-  // The one that steers goes without a word; the other may then.
+  // The steering page disappears without a message; then the other one may steer.
   first->kill();
   ASSERT_TRUE(hearsOf(second, R"("steered":false)"));
   second.say(R"({"steer":true})");
@@ -254,8 +255,8 @@ TEST(PageServer, AFloodIsCutOffAndOthersGoOn) {
   PageLine other(served.server.port());
   ASSERT_TRUE(flood.open(served.server.token()));
   ASSERT_TRUE(other.open(served.server.token()));
-  // So many that, however slowly they come through, some second has too many: it ends by the
-  // server's will.
+  // So many messages that, however slowly they pass, some second has too many: the server closes
+  // the connection.
   int sent = 0;
   constexpr int kMost = 10'000'000;
   while (sent < kMost && flood.say(R"({"to":[0,0,0]})")) ++sent;
@@ -275,9 +276,9 @@ TEST(PageServer, AMessageTooLongIsCutOff) {
 }
 
 TEST(PageServer, ASlowReaderGetsFewMessagesAndHoldsUpNobody) {
-  // Two readers, told apart by their number of messages: one that reads, and one that never does.
+  // Two readers, told apart by their number of messages: one reads, the other one never does.
   std::mutex mutex;
-  std::vector<std::uint64_t*> seen;  // of each line, in the order in which they came
+  std::vector<std::uint64_t*> seen;  // for each connection, in the order of their opening
   std::vector<std::uint64_t> made;
   const std::string filling(100'000, ' ');
   PageServer server({.get = {},
@@ -307,7 +308,8 @@ TEST(PageServer, ASlowReaderGetsFewMessagesAndHoldsUpNobody) {
     const std::lock_guard lock(mutex);
     return made[0];
   };
-  // The kernel's buffers fill up; from then on no message is made for who does not read.
+  // The kernel's buffers fill up; from then on no message is made for the reader that does not
+  // read.
   std::uint64_t before = 0;
   do {
     before = made_for_slow();
@@ -327,12 +329,12 @@ TEST(PageServer, APageThatHasNotShownAMessageGetsNoOther) {
   PageLine line(server.port());
   ASSERT_TRUE(line.open(server.token()));
   ASSERT_EQ(line.hearOnly(), "1");
-  // Other pages go on, hundreds of messages of theirs, and this one is still in its first.
+  // Another page gets hundreds of messages, while this one has not yet shown its first.
   PageLine other(server.port());
   ASSERT_TRUE(other.open(server.token()));
   for (int i = 2; i < 300; ++i) ASSERT_EQ(other.hear(), std::to_string(i));
   ASSERT_TRUE(line.say(R"({"seen":true})"));
-  // What comes then is of now: the other's next may have been made before it.
+  // Its next message is up to date; the other page's next one may have been made before it.
   const std::optional<std::string> next = line.hearOnly();
   ASSERT_TRUE(next);
   EXPECT_GE(std::stoi(*next), 300);

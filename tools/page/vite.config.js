@@ -1,6 +1,6 @@
 import { defineConfig } from "vite";
 
-// Names without hashes: the files are built into the command, and nobody caches them.
+// File names without hashes: the files are built into the command, and are not cached.
 export default defineConfig({
   base: "./",
   build: {

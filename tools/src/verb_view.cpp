@@ -27,7 +27,7 @@
 namespace palpate::tools {
 namespace {
 
-/// What the page's hand holds if nothing else is asked for.
+/// The device in the hand that the page moves, unless the user names another.
 constexpr const char* kDevice = "touch";
 
 void checkPage() {
@@ -47,7 +47,7 @@ std::string fileText(const std::string& file) {
   return text.str();
 }
 
-/// The server, once it listens, and its address told.
+/// Starts the server, and prints its address.
 std::unique_ptr<PageServer> serve(PageDesk& desk, const ViewOptions& options, Console& console) {
   auto server = std::make_unique<PageServer>(
       desk.host(),
@@ -75,7 +75,7 @@ std::string pageText(const PageServer& server) {
          formatBytes(counts.bytes) + " sent, " + formatCount(counts.refused) + " refused\n";
 }
 
-/// Until a stop, or until `seconds` are over.
+/// Waits until the user asks to stop, or until `seconds` are over.
 void waitFor(const std::optional<double>& seconds) {
   using Clock = std::chrono::steady_clock;
   constexpr auto kLook = std::chrono::milliseconds(20);
@@ -197,7 +197,7 @@ Report run(const ViewOptions& asked, const GeneralOptions& general, Console& con
   ViewOptions options = asked;
   if (options.touch.device.name.empty()) options.touch.device.name = kDevice;
   TouchOptions timeless = options.touch;
-  timeless.seconds.reset();  // here it is of every hand
+  timeless.seconds.reset();  // with `view` this option applies to every kind of hand
   checkDevice(timeless);
   checkPage();
   return options.replay.empty() ? viewSession(options, general, console)

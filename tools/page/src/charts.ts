@@ -1,4 +1,4 @@
-// Strip charts: the last seconds of a number.
+// Strip charts: a number over the last seconds.
 
 const span = 10; // [s]
 
@@ -17,7 +17,7 @@ export class StripChart {
     private readonly color: string,
   ) {}
 
-  /** A time before the last one begins anew: somebody went back in a record. */
+  /** A time before the last one starts a new chart: the user went back in a record. */
   add(t: number, value: number): void {
     const last = this.samples[this.samples.length - 1];
     if (last !== undefined && t < last.t) this.samples = [];

@@ -1,6 +1,6 @@
 // The colors of forces.
 
-/** Lighter and lighter, so that it reads without color as well; the first one stands out from the ground. */
+/** Lightness increases, so that colors need not be seen; the first one stands out from the background. */
 const stops: [number, number, number][] = [
   [0.45, 0.5, 0.85],
   [0.35, 0.6, 0.85],
@@ -10,7 +10,7 @@ const stops: [number, number, number][] = [
   [0.99, 0.91, 0.15],
 ];
 
-/** Red, green and blue of a share from 0 to 1. */
+/** Red, green and blue for a share from 0 to 1. */
 export function colorOfShare(share: number): [number, number, number] {
   const at = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
   const below = Math.min(Math.floor(at), stops.length - 2);

@@ -1,4 +1,4 @@
-// Words and numbers of what is felt now, and the table of transitions.
+// Words and numbers for the present tick, and the table of transitions.
 
 import type { SceneWords, Tick } from "./wire";
 import { StripChart } from "./charts";
@@ -51,7 +51,7 @@ export class Felt {
     return this.words?.ports[id] ?? "?";
   }
 
-  /** `isAll`: the entries of `tick` are all that there are, not those since the last time. */
+  /** `isAll`: `tick` holds all entries of the session, not only those since the last call. */
   show(tick: Tick, isAll: boolean): void {
     const words = this.words;
     if (words === null) return;

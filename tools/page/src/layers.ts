@@ -8,7 +8,7 @@ export interface LayerLook {
   opacity: number;
 }
 
-/** The looks that layers have by name stay when the scene is another. */
+/** Visibility and opacity are kept by name when another scene is shown. */
 export class Layers {
   private readonly looks = new Map<string, LayerLook>();
   private rows: HTMLLIElement[] = [];
@@ -63,7 +63,7 @@ export class Layers {
   look(name: string, index: number, count: number): LayerLook {
     const known = this.looks.get(name);
     if (known !== undefined) return known;
-    // What lies outside lets see what lies within.
+    // Outer layers are translucent, so that inner ones are visible.
     const made = { visible: true, opacity: count > 2 && index === count - 1 ? 0.9 : 0.55 };
     this.looks.set(name, made);
     return made;

@@ -10,7 +10,7 @@ import { Line, fetchScene, fetchSurface, type SceneWords, type Snapshot, type Ve
 
 const byId = (id: string): HTMLElement => document.getElementById(id)!;
 
-const sayEvery = 15; // [ms] at most as often as there are frames
+const sayEvery = 15; // [ms] least time between messages that are not sent with a frame
 
 class Page {
   readonly canvas = byId("space") as HTMLCanvasElement;
@@ -24,9 +24,9 @@ class Page {
   last: Snapshot | null = null;
   told: Vector = [0, 0, 0];
   start: Vector = [0, 0, 0];
-  /** Surfaces that were asked for, in the order of regions. */
+  /** Number of surfaces requested, in the order of regions. */
   asked = 0;
-  /** Surfaces that are shown. */
+  /** Number of surfaces shown. */
   shown = 0;
   private hasMoved = false;
   private saidAt = 0;
@@ -56,7 +56,7 @@ class Page {
     this.canvas.focus();
   }
 
-  /** Of Steering. However long a frame takes, the hand hears of it soon. */
+  /** Called by Steering. Sends at once, so that the hand does not wait for a slow frame. */
   changed(): void {
     this.hasMoved = true;
     if (performance.now() - this.saidAt > sayEvery) this.say();
@@ -111,7 +111,7 @@ class Page {
       return;
     }
     while (this.asked < Math.min(snapshot.surfaces, words.regions.length)) void this.addSurface(words, this.asked++);
-    // Whoever comes first steers.
+    // The first page to come steers.
     if (!this.hasAsked && !snapshot.steered && words.mode !== "device") this.line.steer(true);
     this.hasAsked = true;
     this.showPlace(snapshot, words);

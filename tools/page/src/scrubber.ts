@@ -1,4 +1,4 @@
-// Goes through a record: a slider, play and pause, single ticks by the arrow keys.
+// Moves through a record: a slider, play and pause, single ticks by the arrow keys.
 
 import type { SceneWords } from "./wire";
 
@@ -8,11 +8,11 @@ export class Scrubber {
   private readonly slider = byId("row") as HTMLInputElement;
   private readonly button = byId("play") as HTMLButtonElement;
   private rows = 1;
-  private rate = 1000; // [1/s] rows, as they were felt
+  private rate = 1000; // [1/s] rows in real time
   private overview: number[] = [];
-  private playedAt: number | null = null; // [ms] the last step of playing
+  private playedAt: number | null = null; // [ms] time of the last step while playing
 
-  /** `onRow` is called with each row that is to be shown. */
+  /** `onRow` is called with each row to show. */
   constructor(private readonly onRow: (row: number) => void) {
     this.slider.addEventListener("input", () => {
       this.playedAt = null;

@@ -1,4 +1,4 @@
-// The scene in space: surfaces, the cut, the probe and what it left behind.
+// The scene in space: surfaces, the cut, the probe and its trail.
 
 import * as THREE from "three";
 import { colorOfShare } from "./colors";
@@ -7,12 +7,12 @@ import type { SceneWords, Surface, Tick, Vector } from "./wire";
 export type Cut = "off" | "x" | "y" | "z" | "view";
 
 const trailLength = 1500; // points
-const fullForce = 3; // [N] the end of the trail's colors
+const fullForce = 3; // [N] at the end of the trail's color scale
 const up = new THREE.Vector3(0, 0, 1);
 
 const vectorOf = (v: Vector): THREE.Vector3 => new THREE.Vector3(v[0], v[1], v[2]);
 
-/** The color that a custom property of the style sheet has. */
+/** The color in a custom property of the style sheet. */
 const styleColor = (name: string): THREE.Color =>
   new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
 
@@ -39,7 +39,7 @@ export class Space {
   private distance = 1;
   private azimuth = -Math.PI / 2 + 0.5;
   private elevation = 0.42;
-  /** Drawn so far. */
+  /** Number of frames drawn. */
   frames = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -51,7 +51,8 @@ export class Space {
     lamp.position.set(-0.4, -0.8, 1);
     this.scene.add(lamp);
 
-    // Marks count as transparent, so that they are drawn after all layers, translucent ones too.
+    // Marks count as transparent, so that they are drawn after all layers, including translucent
+    // ones.
     const ball = new THREE.SphereGeometry(1, 24, 16);
     const mark = (name: string) =>
       new THREE.Mesh(ball, new THREE.MeshBasicMaterial({ color: styleColor(name), depthTest: false, transparent: true }));
@@ -92,7 +93,7 @@ export class Space {
     this.scene.add(this.hip, this.proxy, this.told, this.arrow, this.link, this.trail);
   }
 
-  /** Forgets what was shown, and looks at the box of `words`. */
+  /** Clears the view, and shows the box of `words`. */
   begin(words: SceneWords, keepsView: boolean): void {
     for (const mesh of this.meshes.values()) mesh.geometry.dispose();
     this.meshes.clear();
@@ -117,7 +118,7 @@ export class Space {
     geometry.setIndex(new THREE.BufferAttribute(surface.indices, 1));
     const material = new THREE.MeshLambertMaterial({ color, side: THREE.DoubleSide });
     const mesh = new THREE.Mesh(geometry, material);
-    // What is inside is drawn first.
+    // Inner surfaces are drawn first.
     mesh.renderOrder = -region;
     this.meshes.set(region, mesh);
     this.layers.add(mesh);
@@ -206,7 +207,7 @@ export class Space {
     this.distance = Math.min(Math.max(this.distance * factor, 0.1 * this.diagonal), 8 * this.diagonal);
   }
 
-  /** How far `place` moves, by shares of the view's height to the right, up and away from the viewer. */
+  /** `place` moved to the right, up and away from the viewer, by shares of the view's height. */
   moved(place: Vector, right: number, upward: number, away: number): Vector {
     const from = vectorOf(place);
     const across = 2 * Math.tan((this.camera.fov * Math.PI) / 360) * from.distanceTo(this.camera.position);
@@ -247,7 +248,7 @@ export class Space {
     ++this.frames;
   }
 
-  /** Through the probe; what is on the viewer's side of it is left out. */
+  /** Puts the cutting plane through the probe; the viewer's side is cut away. */
   private placePlane(): void {
     const toViewer = this.camera.position.clone().sub(this.center);
     const normal = new THREE.Vector3();

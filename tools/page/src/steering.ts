@@ -1,12 +1,12 @@
-// What moves the hand and the view: pointer, wheel, keys, gamepad.
+// Input that moves the hand and the view: pointer, wheel, keys, gamepad.
 
 import type { Space } from "./space";
 import type { Vector } from "./wire";
 
-const keyStep = 0.35; // [1/s] shares of the view's height, of a key that is held
+const keyStep = 0.35; // [1/s] share of the view's height while a key is held
 const turnStep = 1.5; // [rad/s]
-const wheelStep = 0.0004; // of the view's height, of a pixel of the wheel
-const stickRest = 0.15; // of a stick's way, which means nothing
+const wheelStep = 0.0004; // share of the view's height per pixel of the wheel
+const stickRest = 0.15; // share of a stick's travel that is ignored
 
 export interface Steered {
   told: Vector;
@@ -15,7 +15,7 @@ export interface Steered {
   changed(): void;
 }
 
-/** Calls `steered.changed()` when the hand is to go elsewhere. */
+/** Calls `steered.changed()` when the hand gets another goal. */
 export class Steering {
   private readonly held = new Set<string>();
   private drag: { button: number; x: number; y: number } | null = null;
@@ -41,7 +41,7 @@ export class Steering {
     canvas.addEventListener("blur", () => this.held.clear());
   }
 
-  /** Once a frame: keys that are held, and the gamepad. */
+  /** To be called once in each frame: handles held keys, and the gamepad. */
   step(): void {
     const now = performance.now();
     const dt = Math.min((now - this.last) / 1000, 0.1);

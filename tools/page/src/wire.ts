@@ -1,4 +1,4 @@
-// What the server says, and the line to it.
+// The server's messages, and the connection to it.
 
 export type Vector = [number, number, number];
 
@@ -103,7 +103,7 @@ export async function fetchSurface(scene: number, region: number): Promise<Surfa
   };
 }
 
-/** Calls `onSnapshot` for each message, and `onEnd` when the server is gone for good. */
+/** Calls `onSnapshot` for each message, and `onEnd` when the server is permanently gone. */
 export class Line {
   private readonly socket: WebSocket;
 
@@ -113,7 +113,7 @@ export class Line {
     this.socket = new WebSocket(address);
     this.socket.onmessage = (event) => {
       onSnapshot(JSON.parse(event.data as string) as Snapshot);
-      // Only then comes the next, so that a slow page shows what is, not what was.
+      // The next one comes only after this, so that a slow page shows the present, not the past.
       this.say('{"seen":true}');
     };
     this.socket.onclose = onEnd;

@@ -1,5 +1,5 @@
 #pragma once
-/// Opens a page in the user's browser, where there is one.
+/// Opens a page in the user's browser, if there is one.
 
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// LiveFeed: what a page may know of a session that runs.
+/// LiveFeed: the data of a running session that a page may see.
 
 #include <algorithm>
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace palpate::tools {
 
-/// A region that the proxy came into.
+/// A region that the proxy entered.
 struct SeenEntry {
-  std::uint64_t number = 0;  ///< from 1, of all entries of the session
+  std::uint64_t number = 0;  ///< from 1, among all entries of the session
   std::uint64_t tick = 0;
   RegionId from = kOutside;
   RegionId to = kOutside;
   int port = -1;       ///< -1: an absent wall
-  double force = 0.0;  ///< [N] that the wall gave way to
+  double force = 0.0;  ///< [N] at which the wall opened
 };
 
-/// How often the ports were passed, one way less the other.
+/// For each port, how many more times it was passed in one direction than in the other.
 class PassedCounts {
  public:
   explicit PassedCounts(const Scene& scene)
@@ -40,27 +40,28 @@ class PassedCounts {
   bool keeps_;
 };
 
-/// The last tick, and what happened since the session began.
+/// The last tick, and the events since the session began.
 struct FeedView {
-  std::uint64_t ticks = 0;  ///< so far; with 0 the rest means nothing
+  std::uint64_t ticks = 0;  ///< so far; if 0, the other members mean nothing
   std::uint64_t number = 0;
   double time = 0.0;  ///< [s]
   Vec3 hip{0.0, 0.0, 0.0};
   TickResult result;
-  std::int64_t ns = 0;             ///< [ns] of the renderer, the longest of the last ticks
-  std::int64_t worst_ns = 0;       ///< [ns] the longest so far
-  std::uint64_t late = 0;          ///< ticks that ended after the next was due
-  double strongest = 0.0;          ///< [N] the largest force of the last ticks
-  double work = 0.0;               ///< [J] of the force on the hand so far
-  std::vector<int> passed;         ///< by PortId, as PassedCounts has it
-  std::vector<SeenEntry> entries;  ///< after the one that was asked for, as far as they are kept
+  std::int64_t ns = 0;             ///< [ns] longest tick of the renderer among the last ones
+  std::int64_t worst_ns = 0;       ///< [ns] longest so far
+  std::uint64_t late = 0;          ///< ticks that ended after the next one was due
+  double strongest = 0.0;          ///< [N] largest force among the last ticks
+  double work = 0.0;               ///< [J] work of the force on the hand so far
+  std::vector<int> passed;         ///< by PortId, see PassedCounts
+  std::vector<SeenEntry> entries;  ///< entries after the requested number, as far as they are kept
 };
 
-/// Fed by the recorder's thread, looked at by the server's: the servo thread meets no lock of it.
+/// Written by the recorder's thread and read by the server's: the servo thread never waits for its
+/// lock.
 class LiveFeed final : public devices::RecordSink {
  public:
   static constexpr std::size_t kKept = 512;  ///< entries
-  static constexpr std::size_t kLast = 128;  ///< ticks, of which a look has the largest
+  static constexpr std::size_t kLast = 128;  ///< ticks over which look() takes the largest values
 
   explicit LiveFeed(const Scene& scene) : passed_(scene) {}
 
@@ -69,7 +70,7 @@ class LiveFeed final : public devices::RecordSink {
     const devices::SessionTick& now = tick.tick;
     const Vec3& hip = now.hip.position;
     if (isFinite(hip)) {
-      // The force of a tick is held until the next.
+      // The force of a tick is held until the next one.
       if (view_.ticks > 0) view_.work += glm::dot(view_.result.force, hip - view_.hip);
       view_.hip = hip;
     }
@@ -88,7 +89,7 @@ class LiveFeed final : public devices::RecordSink {
     }
   }
 
-  /// With the entries after number `seen`.
+  /// The present view, with the entries after number `seen`.
   [[nodiscard]] FeedView look(std::uint64_t seen) const {
     const std::lock_guard lock(mutex_);
     FeedView out = view_;

@@ -10,7 +10,7 @@
 namespace palpate::tools {
 namespace {
 
-constexpr std::size_t kColumns = 1000;  // of a recorded run's overview
+constexpr std::size_t kColumns = 1000;  // in the overview of a recorded run
 
 std::string textOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -20,7 +20,7 @@ PageAnswer jsonAnswer(const Json& json) {
   return {"application/json", std::make_shared<const std::string>(textOf(json))};
 }
 
-/// The number in front of `text`, which goes on behind it and `separator`; none: it is not there.
+/// Takes a number and the `separator` behind it off the front of `text`; nothing if there is none.
 std::optional<std::size_t> numberIn(std::string_view& text, char separator) {
   std::size_t number = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -103,7 +103,7 @@ std::string PageDesk::snapshot(std::uint64_t& seen, const PagePlace& place) {
                {"steers", place.steers},
                {"steered", place.is_steered},
                {"pages", place.pages}};
-  // One who goes back and forth in a record gets all of its past each time.
+  // A page that goes back in a record gets all of its past each time.
   const FeedView view =
       subject_.run != nullptr ? subject_.run->at(row_, 0) : subject_.feed->look(seen);
   if (subject_.run != nullptr) json["row"] = row_;

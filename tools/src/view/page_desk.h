@@ -1,6 +1,6 @@
 #pragma once
-/// PageDesk: answers what pages ask about a session or a recorded run, and does what the one that
-/// steers says.
+/// PageDesk: answers the questions of pages about a session or a recorded run, and executes the
+/// commands of the page that steers.
 
 #include <memory>
 #include <mutex>
@@ -14,12 +14,12 @@
 
 namespace palpate::tools {
 
-/// What is shown. All of it outlives the desk.
+/// The subject that pages show. All of it outlives the desk.
 struct PageSubject {
-  LiveFeed* feed = nullptr;          ///< of a session that runs; null: a recorded run
-  SteeredHand* hand = nullptr;       ///< that the page moves; null: another hand holds the device
+  LiveFeed* feed = nullptr;          ///< for a running session; null: a recorded run
+  SteeredHand* hand = nullptr;       ///< moved by the page; null: another hand holds the device
   const RecordedRun* run = nullptr;  ///< null: a session
-  DeviceMapping mapping = {};        ///< of the hand's device
+  DeviceMapping mapping = {};        ///< for the hand's device
   Json about = {};                   ///< goes into scene.json: device, rate
 };
 
@@ -27,7 +27,7 @@ class PageDesk {
  public:
   PageDesk(PageSubject subject, std::shared_ptr<const ShownScene> shown);
 
-  /// For a PageServer, which the desk outlives.
+  /// The interface for a PageServer; the desk must outlive the server.
   [[nodiscard]] PageHost host();
 
  private:
@@ -38,8 +38,8 @@ class PageDesk {
   [[nodiscard]] std::shared_ptr<const ShownScene> shown() const;
 
   PageSubject subject_;
-  Vec3 told_;            ///< [m, world] where the page leads the hand
-  std::size_t row_ = 0;  ///< of the recorded run
+  Vec3 told_;            ///< [m, world] where the page wants the hand to be
+  std::size_t row_ = 0;  ///< in the recorded run
   mutable std::mutex mutex_;
   std::shared_ptr<const ShownScene> shown_;
 };

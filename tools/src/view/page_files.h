@@ -12,7 +12,7 @@ struct PageFile {
   std::string_view bytes;
 };
 
-/// None in a build that had no page.
+/// Empty in a build without a page.
 [[nodiscard]] std::span<const PageFile> pageFiles() noexcept;
 
 }  // namespace palpate::tools

@@ -9,7 +9,7 @@
 namespace palpate::tools {
 namespace {
 
-/// In a time that does not tell how much of it is right.
+/// Compares in a time that does not reveal how many characters agree.
 bool isSame(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;

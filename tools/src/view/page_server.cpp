@@ -28,10 +28,12 @@ using asio::ip::tcp;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kLongestHeader = 8192;           // [bytes]
-constexpr auto kPatience = std::chrono::seconds(20);   // for a request, and for an answer's way
-constexpr auto kNap = std::chrono::milliseconds(100);  // before the next try, out of descriptors
-constexpr auto kQuiet = std::chrono::seconds(30);      // of a page, its pings included
+constexpr std::size_t kLongestHeader = 8192;  // [bytes]
+// for a request to arrive, and for an answer to be sent
+constexpr auto kPatience = std::chrono::seconds(20);
+// before the next try, when file descriptors have run out
+constexpr auto kNap = std::chrono::milliseconds(100);
+constexpr auto kQuiet = std::chrono::seconds(30);  // longest silence of a page, pings included
 constexpr const char* kSeen = R"({"seen":true})";
 constexpr const char* kLine = "live";  // the path of the WebSocket
 
@@ -95,7 +97,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
   void stop() {
     context_.stop();
     if (thread_.joinable()) thread_.join();
-    // Before the context, whose sockets they have.
+    // Before the context, because they have its sockets.
     lines_.clear();
     steering_.reset();
   }
@@ -107,7 +109,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
   }
   [[nodiscard]] int open() const noexcept { return open_.load(); }
 
-  // Of the connections.
+  // For the connections.
 
   void begin() noexcept { ++open_; }
   void end() noexcept { --open_; }
@@ -118,7 +120,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
     const auto text = [](boost::string_view view) {
       return std::string_view(view.data(), view.size());
     };
-    // A header that is there twice means neither.
+    // If a header occurs twice, neither counts.
     const bool is_doubled =
         request.count(http::field::host) > 1 || request.count(http::field::origin) > 1;
     PageDecision decision =
@@ -131,8 +133,8 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
     return decision;
   }
 
-  /// Nothing from elsewhere; a WebSocket has to be named, as not every browser takes it for the
-  /// same address.
+  /// Allows nothing from elsewhere. The WebSocket's address is named, because not every browser
+  /// counts it as the same origin.
   [[nodiscard]] std::string policy() const {
     const std::string port = std::to_string(port_);
     return "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
@@ -152,7 +154,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
 
   [[nodiscard]] Clock::duration unseen() const { return unseen_; }
 
-  /// False: there are pages enough.
+  /// False: there are too many pages already.
   [[nodiscard]] bool join(const std::shared_ptr<Line>& line) {
     if (lines_.size() >= static_cast<std::size_t>(kMostPages)) return false;
     lines_.insert(line);
@@ -164,7 +166,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
   }
 
   void take(const std::shared_ptr<Line>& line, const std::string& message) {
-    // The only message that the server itself understands.
+    // The only message that the server itself interprets.
     if (message == R"({"steer":true})") {
       if (!steering_) steering_ = line;
     } else if (message == R"({"steer":false})") {
@@ -187,7 +189,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
         context_.run();
         return;
       } catch (const std::exception&) {
-        // Out of memory for one answer: the connection is gone, the others go on.
+        // Out of memory for one answer: this connection ends, the others go on.
       }
     }
   }
@@ -214,7 +216,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
   std::thread thread_;
 };
 
-/// A page that listens.
+/// A page that receives messages.
 class PageServer::Work::Line : public std::enable_shared_from_this<Line> {
  public:
   Line(Work& work, beast::tcp_stream&& stream) : work_(work), stream_(std::move(stream)) {
@@ -225,7 +227,7 @@ class PageServer::Work::Line : public std::enable_shared_from_this<Line> {
   Line& operator=(const Line&) = delete;
 
   void begin(const http::request<http::empty_body>& request) {
-    // The stream has timers of its own from here on.
+    // From here on the stream has timers of its own.
     beast::get_lowest_layer(stream_).expires_never();
     stream_.set_option(websocket::stream_base::timeout{kPatience, kQuiet, true});
     stream_.read_message_max(kLongestCommand);
@@ -236,8 +238,8 @@ class PageServer::Work::Line : public std::enable_shared_from_this<Line> {
     });
   }
 
-  /// Sends what there is now, unless the last message is still under way, or waits in a page that
-  /// is busy: what is behind it there would be old when it is shown.
+  /// Sends the present data, unless the last message is still being sent, or waits in a busy page:
+  /// data queued behind it would be outdated when shown.
   void tick() {
     const auto now = Clock::now();
     if (is_writing_ || (!is_seen_ && now - sent_ < work_.unseen())) return;
@@ -306,7 +308,7 @@ class PageServer::Work::Line : public std::enable_shared_from_this<Line> {
 
 namespace {
 
-/// A browser that asks for files.
+/// A browser that requests files.
 template <typename Work, typename Line>
 class Connection : public std::enable_shared_from_this<Connection<Work, Line>> {
  public:
@@ -379,7 +381,7 @@ class Connection : public std::enable_shared_from_this<Connection<Work, Line>> {
   beast::flat_buffer buffer_{2 * kLongestHeader};
   std::optional<http::request_parser<http::empty_body>> parser_;
   http::response<http::span_body<const char>> response_;
-  std::shared_ptr<const std::string> bytes_;  ///< of response_
+  std::shared_ptr<const std::string> bytes_;  ///< content of response_
 };
 
 }  // namespace
@@ -387,7 +389,7 @@ class Connection : public std::enable_shared_from_this<Connection<Work, Line>> {
 void PageServer::Work::acceptNext() {
   acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
     if (error) {
-      // Out of descriptors, or the other side was gone at once.
+      // File descriptors have run out, or the other side closed at once.
       nap_.expires_after(kNap);
       nap_.async_wait([this](const error_code& canceled) {
         if (!canceled) acceptNext();

@@ -14,7 +14,7 @@
 namespace palpate::tools {
 namespace {
 
-/// The number that `scene` has for each of `names`. @throws Error (kInput).
+/// The number in `scene` for each of `names`. @throws Error (kInput).
 template <typename Number>
 std::vector<Number> regionNumbers(const std::vector<std::string>& names, const Scene& scene) {
   std::vector<Number> numbers;
@@ -78,7 +78,7 @@ void RecordedRun::readTrace(const std::string& file, const Scene& scene) {
     Row row;
     row.tick = rows_.size();
     row.t = from.t;
-    // What a broken sensor read has no place.
+    // A broken sensor's reading has no place.
     row.hip = from.is_finite ? from.hip : Vec3(std::numeric_limits<double>::quiet_NaN());
     row.proxy = from.proxy;
     row.force = from.force;
@@ -105,7 +105,7 @@ void RecordedRun::addUp(const Scene& scene) {
     }
     row.worst_ns = std::max(row.ns, i > 0 ? rows_[i - 1].worst_ns : 0);
     row.late = (i > 0 ? rows_[i - 1].late : 0) + (row.is_late ? 1 : 0);
-    // Of several ports in one tick the regions between them are not in the file.
+    // If several ports are passed in one tick, the file does not contain the regions between them.
     for (std::size_t k = 0; k < row.events.size() || (k == 0 && row.region != before); ++k) {
       const int port = k < row.events.size() ? row.events[k] : -1;
       const RegionEntry entry{.from = before, .to = row.region, .port = port};

@@ -1,5 +1,5 @@
 #pragma once
-/// RecordedRun: a trace or a record that a page goes through, tick by tick.
+/// RecordedRun: a trace or a record that a page shows tick by tick.
 
 #include <array>
 #include <cstdint>
@@ -13,14 +13,15 @@ namespace palpate::tools {
 
 class RecordedRun {
  public:
-  /// Of `touch --record` (.npy) or `touch --trace` (.csv), by the names of `scene`.
-  /// @throws Error (kInput) for another file, or a region or port that the scene has not.
+  /// Reads a `touch --record` (.npy) or a `touch --trace` (.csv), with the names of `scene`.
+  /// @throws Error (kInput) for another kind of file, or for a region or port that the scene does
+  /// not have.
   RecordedRun(const std::string& file, const Scene& scene);
 
   [[nodiscard]] std::size_t size() const noexcept { return rows_.size(); }
-  /// The tick in row `row`, which is there, as if the session stood at it.
+  /// The tick in row `row`, which must exist, in the form of a session at that tick.
   [[nodiscard]] FeedView at(std::size_t row, std::uint64_t seen) const;
-  /// [N] The largest force of each of at most `columns` stretches of one length.
+  /// [N] The largest force in each of at most `columns` intervals of equal length.
   [[nodiscard]] std::vector<double> overview(std::size_t columns) const;
 
  private:
@@ -49,7 +50,7 @@ class RecordedRun {
   struct Passing {
     std::size_t row = 0;
     SeenEntry entry;
-    std::vector<int> passed;  ///< after it
+    std::vector<int> passed;  ///< after this row
   };
   std::vector<Passing> passings_;
   std::size_t ports_ = 0;

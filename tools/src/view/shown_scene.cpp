@@ -16,10 +16,10 @@
 namespace palpate::tools {
 namespace {
 
-constexpr double kFallbackSize = 0.2;  // [m] of a scene without bounds
-constexpr double kMargin = 0.06;       // of the longest side, around what has bounds
+constexpr double kFallbackSize = 0.2;  // [m] size of the view of an unbounded scene
+constexpr double kMargin = 0.06;       // share of the longest side, around everything bounded
 
-/// Told apart by eyes that do not see all colors: P. Tol's scheme "light".
+/// Colors that color-blind readers can tell apart: P. Tol's scheme "light".
 constexpr std::array<const char*, 8> kLayerColors = {"#ee8866", "#77aadd", "#eedd88", "#44bb99",
                                                      "#ffaabb", "#99ddff", "#bbcc33", "#aaaa00"};
 
@@ -127,7 +127,7 @@ std::shared_ptr<const std::string> ShownScene::surface(std::size_t region) const
 }
 
 void ShownScene::makeSurfaces() {
-  // Of this thread alone: the loop goes first.
+  // Applies to this thread only: the loop has priority.
   constexpr int kNice = 10;
   setpriority(PRIO_PROCESS, 0, kNice);
   const Box3 view = viewBox(*scene_);

@@ -1,6 +1,6 @@
 #pragma once
-/// ShownScene: a scene as a page shows it: names, colors, words, and surfaces that are made one
-/// after the other.
+/// ShownScene: a scene in the form that a page shows: names, colors, words, and surfaces that are
+/// made one after another.
 
 #include <atomic>
 #include <memory>
@@ -16,26 +16,27 @@
 
 namespace palpate::tools {
 
-/// Room around all that has bounds, for the eye.
+/// The box of everything bounded, with a margin for the view.
 [[nodiscard]] Box3 viewBox(const Scene& scene);
 
-/// Where a hand begins that has no place of its own: in the start region, above the scene if that
-/// is the outside.
+/// The starting place of a hand without a place of its own: in the start region, above the scene if
+/// that is the outside.
 [[nodiscard]] Vec3 handStart(const Scene& scene);
 
-/// What the probe feels at a place, in words.
+/// The feeling of the probe at a place, in words.
 struct FeltWords {
-  std::string content;  ///< of the proxy's region; empty: nothing is felt in it
-  std::string wall;     ///< that is pressed; empty: none
+  std::string content;  ///< of the proxy's region; empty: it is not felt
+  std::string wall;     ///< the pressed wall; empty: none
 };
 [[nodiscard]] FeltWords feltAt(const Scene& scene, const Vec3& hip, const TickResult& result);
 
 class ShownScene {
  public:
-  /// Surfaces err by this share of the view's diagonal at most, where the finest lattice allows.
+  /// Largest error of surfaces, as a share of the view's diagonal, if the finest lattice can reach
+  /// it.
   static constexpr double kTolerance = 5e-4;
 
-  /// Reads what it needs of `loaded`, and makes the surfaces in a thread of its own. `number`: how
+  /// Reads the needed parts of `loaded`, and makes the surfaces in a separate thread. `number`: how
   /// many scenes were shown before.
   ShownScene(ScenePtr scene, const LoadedScene& loaded, std::string text, int number);
   ~ShownScene();
@@ -45,9 +46,9 @@ class ShownScene {
   [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
   [[nodiscard]] int number() const noexcept { return number_; }
   [[nodiscard]] const Json& json() const noexcept { return json_; }
-  /// Null if it was not made yet, or there is none.
+  /// Null if it is not made yet, or if there is none.
   [[nodiscard]] std::shared_ptr<const std::string> surface(std::size_t region) const;
-  /// How many regions were looked at so far, in their order.
+  /// How many regions are done so far, in their order.
   [[nodiscard]] int surfacesDone() const noexcept { return done_.load(); }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-/// SteeredHand: a hand that goes where a page says, as a hand goes: smoothly, and no faster than
-/// one can follow.
+/// SteeredHand: a hand that moves to where a page wants it, as a real hand would: smoothly, and not
+/// too fast to follow.
 
 #include <algorithm>
 #include <cmath>
@@ -10,21 +10,24 @@
 
 namespace palpate::tools {
 
-/// One thread says where to, the servo thread asks where the hand is. Neither waits for the other.
+/// One thread sets the goal, and the servo thread asks for the hand's position. Neither waits for
+/// the other.
 class SteeredHand {
  public:
-  static constexpr double kTime = 0.03;     ///< [s] in which it makes 63 % of its way
-  static constexpr double kSpeed = 0.5;     ///< [m/s] at most
-  static constexpr double kLongest = 0.05;  ///< [s] between two questions that counts as motion
+  /// [s] time constant: it covers 63 % of the distance in this time
+  static constexpr double kTime = 0.03;
+  static constexpr double kSpeed = 0.5;  ///< [m/s] at most
+  /// [s] longest time between two calls of at() that counts as motion
+  static constexpr double kLongest = 0.05;
 
   explicit SteeredHand(const Vec3& start) : place_(start), goal_(start) {}
 
-  /// `goal` [m]; one that is not finite counts as none.
+  /// `goal` [m]; a goal that is not finite is ignored.
   void steer(const Vec3& goal) noexcept {
     if (isFinite(goal)) asked_.store({goal});
   }
 
-  /// [m] At `t` [s], which does not fall. Real-time safe.
+  /// [m] Position at `t` [s]; t must not decrease. Real-time safe.
   [[nodiscard]] Vec3 at(double t) noexcept {
     if (const auto asked = asked_.load()) goal_ = asked->goal;
     const double dt = std::clamp(t - last_, 0.0, kLongest);

@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little, "surfaces travel as th
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// Corners of cubic cells, and their values.
+/// The corners of cubic cells, with their values.
 class Lattice {
  public:
   Lattice(const Field& field, const Box3& box, int cells) : lo_(box.lo) {
@@ -70,13 +70,13 @@ class Lattice {
 
 bool isInside(double value) { return value < 0.0; }
 
-/// [m] To first order; 0 where the field has no slope.
+/// [m] Distance to first order; 0 where the gradient vanishes.
 double distanceOf(const FieldSample& sample) {
   const double slope = glm::length(sample.gradient);
   return slope > 0.0 ? std::fabs(sample.value) / slope : 0.0;
 }
 
-/// `p` moved onto the surface, but no further than half a cell from where it was.
+/// `p` moved onto the surface, by at most half a cell.
 Vec3 onSurface(const Field& field, Vec3 p, double step) {
   constexpr int kSteps = 5;
   const Vec3 begin = p;
@@ -91,7 +91,7 @@ Vec3 onSurface(const Field& field, Vec3 p, double step) {
   return p;
 }
 
-/// Makes the points of cells when they are asked for.
+/// Makes the points of cells on demand.
 class Net {
  public:
   Net(const Field& field, const Lattice& lattice, SurfaceNet& out)
@@ -177,7 +177,7 @@ SurfaceNet surfaceNet(const Field& field, const Box3& box, int cells) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
           const std::size_t u = (axis + 1) % 3;
           const std::size_t v = (axis + 2) % 3;
-          // An edge of the lattice within it: four cells share it.
+          // For an edge in the interior of the lattice: four cells share it.
           if (here[axis] + 1 >= count[axis] || here[u] == 0 || here[v] == 0) continue;
           if (here[u] + 1 >= count[u] || here[v] + 1 >= count[v]) continue;
           Lattice::Corner next = here;

@@ -1,5 +1,5 @@
 #pragma once
-/// A field's surface as triangles, for the eye.
+/// A field's surface as triangles, for display.
 
 #include <array>
 #include <cstdint>
@@ -13,19 +13,19 @@ namespace palpate::tools {
 struct SurfaceNet {
   std::vector<Vec3> points;                             ///< [m] on the surface, each once
   std::vector<Vec3> normals;                            ///< [-] of the field, outward
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counterclockwise seen from outside
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counterclockwise as seen from outside
   double error =
       0.0;        ///< [m] largest distance of a triangle's middle from the surface, to first order
-  int cells = 0;  ///< of the lattice along the longest side of the box
+  int cells = 0;  ///< number along the longest side of the box
 };
 
-/// The part of the surface of `field` within `box`, which is bounded: one point in each lattice
-/// cell that the surface passes through, moved onto it along the gradient. A surface that leaves
-/// the box is open there.
+/// The part of the surface of `field` within the bounded `box`: one point in each lattice cell that
+/// the surface passes through, moved onto the surface along the gradient. Where the surface leaves
+/// the box, the mesh is open.
 [[nodiscard]] SurfaceNet surfaceNet(const Field& field, const Box3& box, int cells);
 
-/// The same on the coarsest of some lattices whose error is at most `tolerance` [m], or on the
-/// finest.
+/// The same on the coarsest of several lattices whose error is at most `tolerance` [m]; if there is
+/// none, on the finest.
 [[nodiscard]] SurfaceNet surfaceWithin(const Field& field, const Box3& box, double tolerance);
 
 /// Little-endian: "PSRF", the numbers of points and triangles (uint32), the points and the normals

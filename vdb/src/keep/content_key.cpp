@@ -11,8 +11,8 @@
 
 namespace palpate::vdb {
 
-// Each step can be undone, so that neither half loses a difference; the two differ in multiplier
-// and turn, so that what one takes for the same the other tells apart.
+// Each step is invertible, so that neither half loses a difference. The halves have different
+// multipliers and rotations, so that inputs that collide in one differ in the other.
 void ContentKey::mix(std::uint64_t word) noexcept {
   state_[0] = (state_[0] ^ word) * 0x9E3779B97F4A7C15U;
   state_[0] ^= state_[0] >> 29;
@@ -63,7 +63,7 @@ bool ContentKey::addFile(const std::string& path, std::uint64_t but) {
 }
 
 std::string ContentKey::text() const {
-  // What was added last has been through few steps.
+  // The last words added have passed through few steps, so mix again.
   ContentKey last = *this;
   for (const std::uint64_t half : state_) last.mix(half);
   char text[33];

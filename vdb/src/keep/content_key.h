@@ -1,5 +1,5 @@
 #pragma once
-/// A name for content: what was made of the same bytes by the same rules has the same.
+/// A key for content: results made from the same bytes by the same rules have the same key.
 
 #include <array>
 #include <concepts>
@@ -9,22 +9,22 @@
 
 namespace palpate::vdb {
 
-/// 128 bits of all that is added, in its order. Not a signature: it tells damage and change, not
-/// forgery.
+/// 128 bits that depend on everything added, and on its order. Not a signature: it shows damage and
+/// change, not forgery.
 class ContentKey {
  public:
-  /// A text with its length, so that "ab", "c" is not "a", "bc".
+  /// A text with its length, so that "ab", "c" differs from "a", "bc".
   ContentKey& add(std::string_view text);
   ContentKey& add(double value);
-  /// Whole numbers, flags and enumerators.
+  /// Integers, flags and enumerators.
   template <std::integral Whole>
   ContentKey& add(Whole value) {
     mix(static_cast<std::uint64_t>(value));
     return *this;
   }
-  /// Bytes as they are; where they are cut into pieces counts.
+  /// Raw bytes; dividing them differently changes the key.
   ContentKey& addBytes(const void* bytes, std::size_t count);
-  /// All bytes of a file, but for the last `but` of them; false if they cannot be read. Stops as
+  /// All bytes of a file except its last `but` bytes; false if they cannot be read. Stops as
   /// pollStop() does.
   bool addFile(const std::string& path, std::uint64_t but = 0);
 

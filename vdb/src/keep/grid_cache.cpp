@@ -27,10 +27,10 @@ namespace fs = std::filesystem;
 constexpr const char* kGrid = ".vdb";
 constexpr const char* kText = ".txt";
 constexpr const char* kPart = ".part";
-/// What a process that was killed left of a file that it wrote. Writing one takes seconds.
+/// Age from which a part of a file was abandoned by a killed process. Writing one takes seconds.
 constexpr auto kAbandoned = std::chrono::hours(1);
 
-/// A file beside its place, until it is whole.
+/// A temporary file beside the final one, until it is complete.
 class Part {
  public:
   explicit Part(const std::string& place) {
@@ -59,7 +59,7 @@ class Part {
   std::string path_;
 };
 
-/// Whether a file is of the kind that this folder is for; nothing else is ever removed.
+/// Whether a file has a name that this cache gives; no other file is ever removed.
 bool isOurs(const fs::path& path) {
   std::string name = path.filename().string();
   const auto end = name.find_first_not_of("0123456789abcdef-");
@@ -81,7 +81,7 @@ bool GridCache::isUsable() const {
   if (owner_ == Owner::kAnyone) return fs::is_directory(folder_, failure);
   fs::create_directories(fs::path(folder_).parent_path(), failure);
   static_cast<void>(mkdir(folder_.c_str(), S_IRWXU));
-  // Where a link leads somebody else may have chosen, unless it is the user's own.
+  // Another user may have chosen the target of a link, unless the link is the user's own.
   struct stat link {};
   struct stat about {};
   if (lstat(folder_.c_str(), &link) != 0 || link.st_uid != geteuid()) return false;
@@ -123,9 +123,9 @@ bool GridCache::keep(const std::string& key, const LevelSet& grid) const {
     makeRoom();
     return is_kept;
   } catch (const Error& error) {
-    // A full disk, say: the grid is made again next time.
+    // A full disk, for example: the grid is then made again next time.
     if (error.kind() == ErrorKind::kCancelled) throw;
-  } catch (const std::exception&) {  // nothing was kept, and nothing is wrong
+  } catch (const std::exception&) {  // nothing was kept, which is not an error
   }
   return false;
 }
@@ -166,7 +166,7 @@ void GridCache::makeRoom() const {
   std::error_code failure;
   const auto abandoned = fs::file_time_type::clock::now() - kAbandoned;
   for (fs::directory_iterator at(folder_, failure), end; at != end; at.increment(failure)) {
-    // Others may remove it meanwhile.
+    // Another process may remove it meanwhile.
     std::error_code gone;
     if (!isOurs(at->path()) || !at->is_regular_file(gone)) continue;
     const fs::file_time_type used = at->last_write_time(gone);

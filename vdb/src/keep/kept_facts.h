@@ -1,5 +1,5 @@
 #pragma once
-/// What goes along with a grid that is kept, so that the next run tells the same as the first.
+/// Facts that are kept with a grid, so that the next run reports the same as the first.
 
 #include <optional>
 #include <string>
@@ -11,18 +11,18 @@
 namespace palpate::vdb {
 
 struct KeptFacts {
-  /// What was said when it was made: about what, and the note.
+  /// The notes from when it was made: the subject of each, and the note.
   std::vector<std::pair<std::string, std::string>> notes;
   LevelSetInfo made;  ///< the grid as it was made, before its band was widened
 };
 
-/// `grid` with the facts in its metadata. Notes about `what` will be about whatever the grid is
-/// called then, all others about its file.
+/// `grid` with the facts in its metadata. When they are read back, notes about `what` refer to the
+/// grid's name at that time, all others to its file.
 [[nodiscard]] LevelSet withFacts(const LevelSet& grid, const KeptFacts& facts,
                                  const std::string& what);
 
-/// The facts of a grid, called `what` now and made of `file`. The grid's own metadata stay in
-/// `made`.
+/// The facts of a grid that is called `what` now and was made from `file`. The grid's own metadata
+/// stay in `made`.
 [[nodiscard]] KeptFacts factsOf(const LevelSet& grid, const std::string& what,
                                 const std::string& file);
 

@@ -10,7 +10,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// As many bytes as a file can have are locks; none of them is ever written.
+/// Each key locks one of the possible byte positions of a file; none of these bytes is ever
+/// written.
 long long byteOf(const std::string& key) {
   constexpr unsigned long long kBytes = (1ULL << 62) - 1;
   return static_cast<long long>(std::strtoull(key.substr(0, 16).c_str(), nullptr, 16) & kBytes);

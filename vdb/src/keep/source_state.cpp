@@ -19,7 +19,7 @@ SourceState::SourceState(const std::vector<std::string>& files, ContentKey& key,
   is_known_ = !files.empty();
   key.add(files.size());
   for (const std::string& path : files) {
-    files_.push_back(look(path));  // before it is read, so that nothing written meanwhile is missed
+    files_.push_back(look(path));  // before the file is read, so that a change meanwhile is noticed
     if (files.size() > 1) key.add(fileName(path));
     is_known_ = is_known_ && key.addFile(path);
   }
@@ -32,8 +32,8 @@ SourceState::File SourceState::look(const std::string& path) {
   file.device = about.st_dev;
   file.node = about.st_ino;
   file.bytes = about.st_size;
-  // When it was written to, and when anything about it changed: who puts another file in its place
-  // may keep the first.
+  // The times of the last write and of the last change of its metadata: a process that replaces the
+  // file may preserve the first of them.
   file.times = {about.st_mtim.tv_sec, about.st_mtim.tv_nsec, about.st_ctim.tv_sec,
                 about.st_ctim.tv_nsec};
   return file;

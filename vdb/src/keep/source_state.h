@@ -1,5 +1,5 @@
 #pragma once
-/// Files that something is made of, as they were when it was begun.
+/// The state of source files at the time when a result was begun.
 
 #include <array>
 #include <cstdint>
@@ -13,19 +13,19 @@ class ContentKey;
 class SourceState {
  public:
   SourceState() = default;
-  /// Of files and folders as they are, whose bytes nobody asks for.
+  /// The present state of files and folders, without reading their bytes.
   explicit SourceState(const std::vector<std::string>& files);
-  /// Adds to `key` the bytes of the files, and their names within their folders where there are
-  /// several: they may mean something. isKnown() is false if one cannot be read. A file that comes
-  /// into one of `folders`, or leaves it, is a change.
+  /// Adds to `key` the bytes of the files, and, if there are several, their names within their
+  /// folders, which may have a meaning. isKnown() is false if one cannot be read. A file that is
+  /// added to one of `folders`, or removed, counts as a change.
   SourceState(const std::vector<std::string>& files, ContentKey& key,
               const std::vector<std::string>& folders = {});
 
   [[nodiscard]] bool isKnown() const noexcept { return is_known_; }
-  /// Whether both are of the same files as they were then.
+  /// Whether both describe the same files in the same state.
   [[nodiscard]] bool isOfTheSame(const SourceState& other) const { return files_ == other.files_; }
-  /// Whether no file was written to or replaced since: what was made of them is of the bytes that
-  /// were looked at.
+  /// Whether no file was written to or replaced since: then a result made from them belongs to the
+  /// bytes that were read.
   [[nodiscard]] bool isUnchanged() const;
 
  private:
@@ -34,7 +34,8 @@ class SourceState {
     std::uint64_t device = 0;
     std::uint64_t node = 0;
     std::int64_t bytes = 0;
-    std::array<std::int64_t, 4> times{};  ///< [s, ns] of its content, and of its node
+    /// [s, ns] of the last write, and of the last change of metadata
+    std::array<std::int64_t, 4> times{};
     bool operator==(const File&) const = default;
   };
   [[nodiscard]] static File look(const std::string& path);

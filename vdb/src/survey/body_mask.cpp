@@ -9,7 +9,7 @@
 namespace palpate::vdb {
 namespace {
 
-/// [-] How far two places may be apart, as a share of a voxel, to be the same.
+/// [voxels] Tolerance within which two places count as the same.
 constexpr double kSamePlace = 1e-3;
 
 bool haveSameVoxels(const Image& a, const Image& b) {
@@ -24,7 +24,7 @@ bool haveSameVoxels(const Image& a, const Image& b) {
   return true;
 }
 
-/// `mask` of `from` at the voxels of `to`.
+/// `mask`, which belongs to `from`, sampled at the voxels of `to`.
 VoxelMask resampled(const VoxelMask& mask, const Image& from, const Image& to) {
   VoxelMask result(to.values.size(), 0);
   const Mat3 to_index = glm::inverse(from.axes) * to.axes;

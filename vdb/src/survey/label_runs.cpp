@@ -8,8 +8,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Sets that are joined two by two; the smaller number leads, so that the first run names its
-/// piece.
+/// Disjoint sets that are merged in pairs; the smaller number becomes the root, so that a piece is
+/// named by its first run.
 class Sets {
  public:
   explicit Sets(std::size_t count) : leader_(count) {

@@ -1,5 +1,6 @@
 #pragma once
-/// An image of small numbers as runs of equal ones along its rows, and the pieces that these form.
+/// An image of small integers as runs of equal numbers along its rows, and the connected components
+/// of these runs.
 
 #include <algorithm>
 #include <array>
@@ -13,7 +14,7 @@ class LabelRuns {
  public:
   using Number = std::uint16_t;
   struct Run {
-    int first = 0;  ///< voxel in its row; it ends where the next run of the row begins
+    int first = 0;  ///< its first voxel in the row; it ends where the next run begins
     Number number = 0;
   };
   struct Piece {
@@ -23,17 +24,18 @@ class LabelRuns {
     bool at_border = false;
   };
 
-  /// `fill(j, k, row)` writes the numbers of a row; called on several threads at once.
+  /// `fill(j, k, row)` writes the numbers of a row; it is called on several threads at once.
   LabelRuns(std::array<int, 3> size, const std::function<void(int, int, Number*)>& fill);
 
-  /// Runs of equal numbers become pieces: across faces, those of `open` numbers across edges too.
+  /// Joins runs of equal numbers to pieces: across faces, and for numbers for which is_open() is
+  /// true across edges too.
   void findPieces(const std::function<bool(Number)>& is_open);
 
   [[nodiscard]] std::size_t count() const noexcept { return runs_.size(); }
   [[nodiscard]] const std::array<int, 3>& size() const noexcept { return size_; }
   [[nodiscard]] const std::vector<Piece>& pieces() const noexcept { return pieces_; }
 
-  /// f(piece, first voxel, voxels) for every run.
+  /// Calls f(piece, first voxel, voxels) for every run.
   template <class F>
   void forEachRun(F&& f) const {
     for (std::size_t row = 0; row + 1 < row_at_.size(); ++row) {
@@ -45,7 +47,7 @@ class LabelRuns {
     }
   }
 
-  /// f(piece, piece, axis, faces) where two runs of different numbers have faces in common.
+  /// Calls f(piece, piece, axis, faces) where two runs of different numbers share faces.
   template <class F>
   void forEachContact(F&& f) const {
     for (int k = 0; k < size_[2]; ++k) {
@@ -74,8 +76,8 @@ class LabelRuns {
     return run + 1 < row_at_[row + 1] ? runs_[run + 1].first : size_[0];
   }
 
-  /// f(run of a, run of b, voxels in common) for runs that overlap, and with `edges` for those too
-  /// that only meet at an end, which a common edge is.
+  /// Calls f(run of a, run of b, voxels in common) for runs that overlap; with `edges` also for
+  /// runs that only touch at an end, where they share an edge.
   template <class F>
   void meet(std::size_t row_a, std::size_t row_b, bool edges, F&& f) const {
     std::size_t a = row_at_[row_a];
@@ -98,7 +100,7 @@ class LabelRuns {
 
   std::array<int, 3> size_;
   std::vector<Run> runs_;
-  std::vector<std::size_t> row_at_;  ///< first run of each row, and the end
+  std::vector<std::size_t> row_at_;  ///< index of each row's first run, and an end
   std::vector<std::uint32_t> piece_of_;
   std::vector<Piece> pieces_;
 };

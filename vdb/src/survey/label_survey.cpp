@@ -17,7 +17,7 @@ namespace palpate::vdb {
 namespace {
 
 constexpr int kMostLabel = 65535;
-/// Gray values change with nearly every voxel, labels with one in dozens.
+/// Gray values change at nearly every voxel, labels at one in dozens.
 constexpr std::uint64_t kVoxelsPerRun = 4;
 constexpr std::size_t kFewLabels = 64;
 
@@ -42,7 +42,7 @@ Vec3 centerOf(const Image& image, std::size_t voxel) {
                             static_cast<double>(slice)));
 }
 
-/// Faces between two pieces, along i, j and k.
+/// Number of faces between two pieces, across i, j and k.
 using Faces = std::array<std::uint64_t, 3>;
 
 class Survey {
@@ -94,7 +94,7 @@ class Survey {
     });
   }
 
-  /// The image's border counts to what is outside.
+  /// The image's border counts as contact with the outside.
   void addBorder(std::size_t region, std::size_t first, std::size_t voxels) {
     if (region == survey_.outside()) return;
     const auto nx = static_cast<std::size_t>(image_.size[0]);
@@ -112,7 +112,7 @@ class Survey {
     survey_.regions[region].border += areaOf(faces);
   }
 
-  /// [m2] A surface of any direction has, on average, 3/2 of its area in faces.
+  /// [m2] For a surface of all directions, faces have 3/2 of its area on average.
   [[nodiscard]] double areaOf(const Faces& faces) const {
     double area = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -128,7 +128,7 @@ class Survey {
 
   void addContacts(const LabelRuns& runs) {
     const auto& pieces = runs.pieces();
-    // The survey says what lies around each small piece.
+    // The survey determines the surroundings of each small piece.
     std::vector<std::unordered_map<std::size_t, std::uint64_t>> around(pieces.size());
     runs.forEachContact([&](std::size_t a, std::size_t b, int axis, int faces) {
       Faces these{};
@@ -159,14 +159,14 @@ class Survey {
     }
   }
 
-  /// Whether more than the image's border is between outside and a region.
+  /// Whether a region touches the outside elsewhere than at the image's border.
   [[nodiscard]] bool isOpen(const LabelSurvey::Contact& of_outside) const {
     const double border = survey_.regions[of_outside.other].border;
     return survey_.regions[survey_.outside()].voxels == 0 ||
            of_outside.area - border > 1e-9 * of_outside.area;
   }
 
-  /// Which regions are reached from outside if `without` is not there.
+  /// The regions that can be reached from outside if `without` blocks the way.
   [[nodiscard]] std::vector<bool> reached(std::size_t without) const {
     std::vector<bool> seen(survey_.regions.size(), false);
     std::vector<std::size_t> stack{survey_.outside()};
@@ -197,8 +197,8 @@ class Survey {
         ++depth[other];
       }
     }
-    // Those around one region are around each other too: the innermost is the one deepest in
-    // others.
+    // Regions that enclose a common region are nested: the innermost is the one that most others
+    // enclose.
     for (std::size_t one = 0; one < count; ++one) {
       for (const std::size_t other : encloses[one]) {
         auto& within = survey_.regions[other].within;
@@ -225,7 +225,7 @@ std::map<int, std::uint64_t> countLabels(const Image& image) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.values.size(), 1U << 16U),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       Counts& counts = parts.local();
-                      // No voxel equals it, whatever the image holds.
+                      // No voxel equals NaN, whatever the image holds.
                       constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
                       float last = kNone;
                       std::uint64_t run = 0;
@@ -323,7 +323,7 @@ std::vector<IslandChange> changeIslands(Image& image, const std::vector<std::vec
         if (p == 0) continue;
         if (rule == IslandRule::kDrop) to = survey.gap();
       } else if (piece.at_border || rule == IslandRule::kDrop || to >= regions.size()) {
-        continue;  // what is around is not a label either, or it is not a cavity
+        continue;  // its surroundings have no label either, or it is not a cavity
       }
       becomes[piece.id] = label_of(to);
       changes.push_back({region, to, piece.voxels, piece.place});
