@@ -18,7 +18,7 @@ struct RandomSceneOptions {
   // The same scene at another place. The numbers in the file are those printed before it is moved.
   bool mirrored = false;    ///< x becomes -x
   std::string unit = "mm";  ///< unit of its numbers
-  std::string placed = {};  ///< inside of `transform`, beside `field`; empty: not moved
+  std::string placed = {};  ///< further keys of `transform`, besides `field`; empty: not moved
 };
 
 /// A scene whose walls all have the default material: 1000 N/m, no friction, no damping, no ports.

@@ -97,7 +97,6 @@ tissues:
     EXPECT_NEAR(limb.radius(last.proxy), Limb::kBone, 0.25);
     // K times the depth, to the same quarter of a voxel; the force is straight outwards only to
     // some degrees, the error of labels.
-    // turn by some degrees.
     EXPECT_NEAR(force, 1000.0 * kDepth * 1e-3, 1000.0 * 0.25e-3);
     EXPECT_GT(glm::dot(last.force, ways[n]), 0.97 * force);
     EXPECT_NEAR(force, glm::length(last.hand - last.proxy),

@@ -1,4 +1,4 @@
-// The parts of what keeps grids: names of content, seals, locks, the bound.
+// The parts of the cache of grids: keys of content, seals, locks, the limit.
 #include "keep/grid_cache.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,8 @@ TEST(ContentKeys, DifferWhereContentDiffers) {
   add(ContentKey());
   add(ContentKey().add(0));
   add(ContentKey().add(0).add(0));
-  add(ContentKey().add(0.0));  // the same bits as the whole number, which is why kinds come first
+  add(ContentKey().add(
+      0.0));  // the same bits as the integer 0, hence the same key: keys begin with a kind
   --count;
   add(ContentKey().add(-0.0));
   add(ContentKey().add("ab").add("c"));
@@ -64,7 +65,7 @@ TEST(ContentKeys, DifferWhereContentDiffers) {
     add(ContentKey().add(other));
   }
   EXPECT_EQ(keys.size(), count);
-  // Each half alone, too: 64 bits of some thousand.
+  // Each half of the key alone must differ, too: 64 bits, some thousand keys.
   std::set<std::string> first;
   std::set<std::string> second;
   for (const std::string& key : keys) {
@@ -116,7 +117,7 @@ TEST(SourceStates, TellThatAnotherFileStoodInThePlaceMeanwhile) {
   fs::last_write_time(other, fs::last_write_time(file));
   ContentKey key;
   const SourceState state({file}, key);
-  // The clock of the file system ticks each 4 ms, or 10.
+  // The file system's clock ticks every 4 ms, or every 10.
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   fs::rename(file, folder.path("away"));
   fs::rename(other, file);
@@ -179,7 +180,7 @@ TEST(MakingLocks, BelongToOneAtATime) {
   }
   MakingLock next(folder.path(), keyOf(1));
   EXPECT_TRUE(next.take());
-  // Where there can be no lock, nobody waits for it.
+  // Where a lock is impossible, nobody waits for it.
   MakingLock none(folder.path("no/such/folder"), keyOf(1));
   EXPECT_TRUE(none.take());
 }
@@ -202,12 +203,12 @@ TEST(GridCaches, KeepWithinTheirBoundWhatWasUsedLast) {
   GridCache unbounded(path);
   unbounded.keep(keyOf(0), grid);
   const std::uint64_t each = fs::file_size(path + "/" + keyOf(0) + ".vdb");
-  // A grid's memory must be no more than a quarter of the bound.
+  // A grid's memory must be at most a quarter of the limit.
   const std::uint64_t room = std::max<std::uint64_t>(4, 4 * grid.info().memory / each + 1);
   const GridCache cache(path, room * each + each / 2);
-  (void)folder.file("cache/notes.vdb", std::string(10 * each, 'x'));  // not of our making: stays
+  (void)folder.file("cache/notes.vdb", std::string(10 * each, 'x'));  // not one of our files: stays
   (void)folder.file("cache/notes.part", "x");
-  std::list<int> model = {0};  // the last used at its end
+  std::list<int> model = {0};  // the last used is at the end
   std::mt19937 random(17);
   auto now = fs::file_time_type::clock::now() - std::chrono::hours(24);
   for (int step = 0; step < 60; ++step) {

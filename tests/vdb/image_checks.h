@@ -16,7 +16,6 @@ namespace palpate::vdb::test {
 
 /// [mm] Numbers in files are decimal or single precision, and both sides compute in double: far
 /// below this.
-/// below it.
 inline constexpr double kSamePlace = 1e-5;
 
 inline std::map<double, std::size_t> histogramOf(const Image& image) {

@@ -1,5 +1,5 @@
-// Grids that scenes bake for themselves are kept by content: the second load bakes nothing and
-// feels the same, and whatever happens to the folder costs time only.
+// Grids that scenes bake for themselves are kept by content: a second load bakes nothing and feels
+// the same, and whatever happens to the folder costs only time.
 #include "palpate/vdb/kept_grids.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr double kMm = 1e-3;
 
-/// Everything that a scene may bake for itself.
+/// All kinds of layers that a scene may bake for itself.
 constexpr const char* kLayers =
     "images: {seg: {file: labels.nii}, ct: {file: ct.nrrd}}\n"
     "layers:\n"
@@ -35,7 +35,7 @@ constexpr const char* kLayers =
 
 constexpr std::size_t kCount = 5;
 
-/// What came of a scene.
+/// The result of loading a scene.
 struct Loaded {
   std::vector<FieldPtr> fields;
   std::vector<Box3> boxes;
@@ -94,7 +94,7 @@ class KeptGrids : public ::testing::Test {
     return all;
   }
 
-  /// Bit for bit, in and around the layers' boxes.
+  /// Equal bit for bit, in and around the layers' boxes.
   static void expectSame(const Loaded& a, const Loaded& b, unsigned seed) {
     ASSERT_EQ(a.fields.size(), b.fields.size());
     std::mt19937 random(seed);
@@ -157,7 +157,7 @@ TEST_F(KeptGrids, TheSecondLoadBakesNothingAndSaysTheSame) {
   }
 }
 
-// Sizes of voxels are stored in the scene's unit: what comes back has to be the very same number.
+// Voxel sizes are stored in the scene's unit: exactly the same number must come back.
 TEST_F(KeptGrids, VoxelsOfAnySizeComeBackAsTheyWere) {
   std::mt19937 random(31);
   std::uniform_real_distribution<double> size(0.7, 3.0);
@@ -223,11 +223,11 @@ TEST_F(KeptGrids, DamagedFilesAreMadeAgain) {
   }
   EXPECT_EQ(load(layers).kept(), 2U);
 
-  // Words about places are sealed as well.
+  // Texts about places are sealed as well.
   for (const fs::path& path : files(".txt")) write(path, "0x1p+9 0 0 0 0 0\n");
   expectSame(first, load(layers), 6);
 
-  // What is not a file at all.
+  // A folder in place of a file.
   fs::remove(damaged);
   fs::create_directory(damaged);
   expectSame(first, load(layers), 7);
@@ -253,7 +253,7 @@ TEST_F(KeptGrids, WhereNothingCanBeKeptNothingIsWrong) {
     }
   }
   EXPECT_TRUE(fs::is_empty(folder_.path("open"))) << "anybody could have put a grid there";
-  // A link of the user's own to a folder of the user's own is the user's choice.
+  // A link of the user's own to a folder of the user's own is accepted.
   fs::create_directory(folder_.path("elsewhere"));
   fs::permissions(folder_.path("elsewhere"), fs::perms::owner_all);
   fs::create_directory_symlink(folder_.path("elsewhere"), folder_.path("linked"));
@@ -297,7 +297,7 @@ TEST_F(KeptGrids, WhateverCountsMakesAnotherGrid) {
     const Loaded again = load(layers);
     EXPECT_EQ(again.kept(), again.grids.size()) << layers;
   }
-  // The same under other names is the same.
+  // The same content under other names counts as the same.
   fs::copy_file(folder_.path("labels.nii"), folder_.path("copy.nii"));
   std::string renamed = labels("file: copy.nii", "match: [1]");
   renamed.replace(renamed.find("bone"), 4, "thigh");
@@ -306,7 +306,7 @@ TEST_F(KeptGrids, WhateverCountsMakesAnotherGrid) {
   EXPECT_EQ(copy.grids[0].info.name, "thigh/surface");
   EXPECT_EQ(copy.grids[0].info.metadata.at("layer"), "thigh");
   EXPECT_EQ(copy.grids[0].info.metadata.at("source"), folder_.path("copy.nii"));
-  // A vertex, and a single voxel.
+  // A changed vertex, and a changed voxel.
   writeStone(10.001);
   EXPECT_EQ(load(stone("")).kept(), 0U);
   std::mt19937 random(11);
@@ -320,7 +320,7 @@ TEST_F(KeptGrids, WhateverCountsMakesAnotherGrid) {
   }
 }
 
-/// The bytes of a voxel's file, wherever a format has them.
+/// A changed voxel changes the key, in whichever file a format keeps its voxels.
 TEST_F(KeptGrids, AVoxelCountsWhereverItsFileIs) {
   const auto raw = [&](const std::string& name, std::uint8_t bone) {
     std::string bytes(std::size_t{12} * 12 * 12, '\0');
@@ -359,8 +359,8 @@ TEST_F(KeptGrids, AVoxelCountsWhereverItsFileIs) {
   }
 }
 
-// What came with its scene is enough, wherever it is and whoever owns it; and a scan that is not
-// there is missed only where a layer needs it.
+// The grids of a bundle are enough, wherever it is and whoever owns it; a missing scan is an error
+// only if a layer needs it.
 TEST_F(KeptGrids, ABundleStandsForItsScans) {
   const std::string bundle = folder_.path("bundle");
   fs::create_directory(bundle);
@@ -373,7 +373,7 @@ TEST_F(KeptGrids, ABundleStandsForItsScans) {
   (void)folder_.file("ct.scan.yaml", scanStandIn(folder_.path("ct.nrrd"), {}));
   fs::remove(folder_.path("labels.nii"));
   fs::remove(folder_.path("ct.nrrd"));
-  fs::permissions(bundle, fs::perms::all);  // anybody's
+  fs::permissions(bundle, fs::perms::all);  // owned and writable by anybody
   std::string layers = kLayers;
   layers.replace(layers.find("labels.nii"), 10, "labels.scan.yaml");
   layers.replace(layers.find("ct.nrrd"), 7, "ct.scan.yaml");
@@ -393,7 +393,7 @@ TEST_F(KeptGrids, ABundleStandsForItsScans) {
 }
 
 // If this fails because baking has changed, raise kBakerVersion in vdb/src/register.cpp and put the
-// new values here: grids that users have kept must not be taken for what is baked now.
+// new values here: grids that users have kept must not be used in place of newly baked ones.
 TEST_F(KeptGrids, WhatIsBakedIsWhatTheBakersVersionStandsFor) {
   const Loaded loaded = load(kLayers, "");
   const test::Limb limb;
@@ -405,7 +405,7 @@ TEST_F(KeptGrids, WhatIsBakedIsWhatTheBakersVersionStandsFor) {
   const std::vector<double> golden = {0.140425, -0.003110, -0.731544, -0.415749, -0.285648};
   ASSERT_EQ(golden.size(), places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
-    // Far more than instruction sets differ by, far less than a change of the method.
+    // Far more than the difference between instruction sets, far less than a change of the method.
     EXPECT_NEAR(loaded.fields[i]->value(places[i] * kMm) / kMm, golden[i], 2e-5) << i;
   }
 }

@@ -47,7 +47,6 @@ ReplayScene sceneOf(const ReplayOptions& options, const RecordAbout& about, Cons
 
 /// Runs `read` on the options in FILE.npy.json, and reports faults as those of that file, not of a
 /// command line.
-/// command line.
 template <typename Read>
 auto fromOptions(const std::string& record, const Read& read) {
   try {

@@ -14,6 +14,7 @@
 namespace palpate::vdb {
 
 /// Where the lines along z through voxel centers enter and leave a solid.
+///
 /// The crossed walls, each counted with its direction, add up to the winding number of each part; a
 /// point is in a part where that number is not zero. A part that lies in another one and is turned
 /// against it is a cavity, whichever way the outer one is turned; all others are solid, and

@@ -9,7 +9,6 @@ double larger(double a, double b) noexcept { return a < b ? b : a; }
 
 /// The larger of two squares: of the differences between a coefficient and the ones before and
 /// after it.
-/// after it.
 double largerSquare(float before, float here, float after) noexcept {
   const double middle = here;
   const double down = middle - static_cast<double>(before);

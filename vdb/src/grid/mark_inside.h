@@ -1,5 +1,5 @@
 #pragma once
-/// Sets the signs inside a band whose voxels beyond the band do not tell the inside.
+/// Sets the signs of voxels beyond a band, where the file did not mark the inside.
 
 #include <openvdb/openvdb.h>
 

@@ -32,7 +32,6 @@ class MeshBuilder {
   /// Corners are numbers from addVertex(); polygons are triangulated by cutting off ears.
   /// @throws Error (kInput, mesh.polygon) if that takes too long, kCancelled if the user asked to
   /// stop.
-  /// asked for.
   void addPolygon(std::span<const std::uint32_t> corners);
 
   /// @throws Error (kInput, mesh.no_faces)

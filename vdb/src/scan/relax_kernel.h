@@ -38,7 +38,6 @@ PALPATE_KERNEL Floats twistAlongRow(const float* c, std::ptrdiff_t u) noexcept {
 /// Calls take(row, its first voxel, the force on its eight voxels) for each row whose bit in `rows`
 /// is set. Differences that adjacent rows share are computed once. Differences that touch a row
 /// without voxels are 0, so that nothing is carried across such a row.
-/// without voxels are none, so nothing is carried across one.
 template <typename Take>
 PALPATE_KERNEL void forForces(const Patch& patch, std::uint64_t rows, const RelaxWeights& w,
                               const Take& take) {

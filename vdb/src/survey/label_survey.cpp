@@ -197,8 +197,8 @@ class Survey {
         ++depth[other];
       }
     }
-    // Regions that enclose a common region are nested: the innermost is the one that most others
-    // enclose.
+    // Regions that enclose one region also enclose each other: the innermost is the one inside most
+    // others.
     for (std::size_t one = 0; one < count; ++one) {
       for (const std::size_t other : encloses[one]) {
         auto& within = survey_.regions[other].within;

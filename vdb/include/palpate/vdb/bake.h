@@ -150,7 +150,6 @@ struct Hybrid {
 /// smoothGridError() and the tolerance it was made with, which shows that it was made from another
 /// field (a hundred blocks of the grid are compared); kOperation if a grid with its bricks would
 /// take more than `max_memory` [bytes]; 0: 80 % of the machine's.
-/// `max_memory` [bytes]; 0: 80 % of the machine's. `within` as in HybridOptions.
 [[nodiscard]] PALPATE_EXPORT FieldPtr recombined(const FieldPtr& field,
                                                  const std::map<std::string, LevelSet>& grids,
                                                  Sampler sampler,

@@ -12,7 +12,6 @@ namespace palpate::vdb {
 /// of the bake is the same.
 /// @throws Error (kUsage) for a processor that this thread may not run on, or where there is no
 /// other; and whatever `bake` throws.
-/// other; and what `bake` throws.
 PALPATE_EXPORT void bakeOffProcessor(int processor, const std::function<void()>& bake);
 
 }  // namespace palpate::vdb

@@ -55,7 +55,7 @@ class PALPATE_EXPORT LevelSet {
 /// How a field reads its grid.
 enum class Sampler {
   kCubic,  ///< haptic bricks: C2 tri-cubic B-spline with its own gradient and Hessian; the default
-  kTrilinear,  ///< trilinear out of the same bricks: the gradient jumps from voxel to voxel
+  kTrilinear,  ///< trilinear, from the same bricks: the gradient jumps from voxel to voxel
   kAccessor,   ///< trilinear by a plain OpenVDB accessor on the grid itself: no memory of its own
 };
 

@@ -87,8 +87,8 @@ class PALPATE_EXPORT LabelSurfaces {
   LabelSurfaces(const LabelSurfaces&) = delete;
   LabelSurfaces& operator=(const LabelSurfaces&) = delete;
 
-  /// As surfaceFromLabels(). What is smoothed for one layer is kept for its neighbors. For lapped
-  /// layers, voxels of neighbors are not counted as filled. =>
+  /// As surfaceFromLabels(). The smoothed function of one layer is kept for its neighbors. With
+  /// lapped layers, voxels of neighbors do not count as filled.
   [[nodiscard]] LevelSet surface(std::size_t layer, double voxel_size, const BakeOptions& bake,
                                  const Progress& progress = {},
                                  LabelEdge edge = LabelEdge::kShared);

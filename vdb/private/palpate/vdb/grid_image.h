@@ -19,7 +19,6 @@ namespace palpate::vdb {
 /// class: values as they are, over the box of the active voxels and one more voxel on every side,
 /// placed by the grid's transform, which may rotate, shear, mirror and stretch. `name` and
 /// `unit_if_missing` as for readVdb().
-/// `unit_if_missing` as for readVdb().
 /// @throws Error: kInput as readVdb() does, vdb.type for grids of vectors and points, vdb.transform
 /// for one that is not linear; kOperation as gridImage() does.
 [[nodiscard]] Image readVdbImage(const std::string& path, const std::string& name,
