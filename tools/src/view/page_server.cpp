@@ -97,7 +97,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
   void stop() {
     context_.stop();
     if (thread_.joinable()) thread_.join();
-    // Before the context, because they have its sockets.
+    // Lines go before the context, because they hold its sockets.
     lines_.clear();
     steering_.reset();
   }
