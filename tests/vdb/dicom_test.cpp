@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 
 #include "palpate/vdb/image.h"
 #include "support/error_of.h"
@@ -133,6 +134,167 @@ TEST(Dicom, AReportBesideTheSlicesIsPassedOverAndASliceWithoutPixelsIsNot) {
   report.storage_class = "1.2.840.10008.5.1.4.1.1.2";
   (void)folder.file("s/report", bytesOf(report));
   EXPECT_EQ(errorOf([&] { (void)readImage(path); }).problem().code, "dicom.truncated");
+}
+
+/// What a test knows of a series with slices anywhere: a field that is linear in the world, in
+/// steps of 1/1000, at each voxel's center.
+class LooseSeries {
+ public:
+  static constexpr int kColumns = 6;
+  static constexpr int kRows = 4;
+
+  /// `shift`: the most by which a slice lies beside the first [voxels].
+  LooseSeries(const TempFolder& folder, unsigned seed, double shift) {
+    std::mt19937 random(seed);
+    const auto any = [&](double a, double b) {
+      return std::uniform_real_distribution<double>(a, b)(random);
+    };
+    const double turn = any(0.0, 6.0);
+    const Vec3 right(std::cos(turn), std::sin(turn), 0.0);
+    const Vec3 down = glm::normalize(Vec3(-right.y, right.x, any(-1.0, 1.0)));
+    slope_ = Vec3(any(-0.3, 0.3), any(-0.3, 0.3), any(-0.3, 0.3));
+    Vec3 position(10.0, -5.0, 3.0);
+    path_ = writeSeries(folder, std::to_string(seed), 7, {0, 0, 1}, [&](DicomFile& file, int k) {
+      const auto list = [](std::initializer_list<double> numbers) {
+        std::string text;
+        for (const double x : numbers) {
+          char digits[32];
+          std::snprintf(digits, sizeof digits, "%.12f", x);
+          text += (text.empty() ? "" : "\\") + std::string(digits);
+        }
+        return text;
+      };
+      if (k > 0) {
+        position += any(0.5, 3.0) * glm::cross(right, down) +
+                    any(-shift, shift) * (0.5 * right + 2.0 * down);
+      }
+      places_.push_back(position);
+      file.position = list({position.x, position.y, position.z});
+      file.orientation = list({right.x, right.y, right.z, down.x, down.y, down.z});
+      file.slope = "0.001";
+      file.intercept = "0";
+      for (int row = 0; row < kRows; ++row) {
+        for (int column = 0; column < kColumns; ++column) {
+          const Vec3 at = position + 0.5 * column * right + 2.0 * row * down;
+          file.pixels.push_back(static_cast<int>(std::lround(1000.0 * value(at))));
+        }
+      }
+    });
+  }
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// At a place in the file's own system [mm].
+  [[nodiscard]] double value(const Vec3& at) const { return glm::dot(slope_, at); }
+  [[nodiscard]] const std::vector<Vec3>& places() const { return places_; }
+
+ private:
+  std::string path_;
+  Vec3 slope_{0.0};
+  std::vector<Vec3> places_;
+};
+
+ImageOptions resamplingOn() {
+  ImageOptions options;
+  options.resample = true;
+  return options;
+}
+
+TEST(DicomResampled, ALinearFieldIsTheSameFieldWhereverTheSlicesLie) {
+  const TempFolder folder;
+  int known = 0;
+  int unknown = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const LooseSeries series(folder, seed, seed % 2 == 0 ? 0.0 : 1.5);
+    EXPECT_EQ(errorOf([&] { (void)readImage(series.path()); }).problem().code, "dicom.spacing");
+    const Image image = readImage(series.path(), resamplingOn());
+    const ImageInfo info = readImageInfo(series.path(), resamplingOn());
+    EXPECT_EQ(info.size, image.size);
+    EXPECT_EQ(info.origin, image.origin);
+    // Right angles, and the slices' own spacing across.
+    EXPECT_NEAR(glm::dot(image.axes[0], image.axes[2]), 0.0, 1e-15);
+    EXPECT_NEAR(glm::dot(image.axes[1], image.axes[2]), 0.0, 1e-15);
+    EXPECT_NEAR(glm::length(image.axes[0]), 0.5e-3, 1e-12);
+    EXPECT_NEAR(glm::length(image.axes[1]), 2e-3, 1e-12);
+    const Vec3 normal = glm::normalize(image.axes[2]);
+    for (int k = 0; k < image.size[2]; ++k) {
+      for (int j = 0; j < image.size[1]; ++j) {
+        for (int i = 0; i < image.size[0]; ++i) {
+          const Vec3 ras = 1e3 * image.toWorld({i, j, k});
+          const float value = image.at(i, j, k);
+          if (std::isnan(value)) {
+            ++unknown;
+            EXPECT_EQ(seed % 2, 1U) << "slices that lie straight hold all voxels";
+            continue;
+          }
+          ++known;
+          // Rounded to 1/1000 when it was stored.
+          ASSERT_NEAR(value, series.value({-ras.x, -ras.y, ras.z}), 0.55e-3) << seed;
+        }
+      }
+    }
+    // From the first slice to the last, and no slice's corner outside.
+    const auto height = [&](const Vec3& lps) {
+      return glm::dot(1e-3 * Vec3(-lps.x, -lps.y, lps.z) - image.origin, normal);
+    };
+    EXPECT_NEAR(height(series.places().front()), 0.0, 1e-12);
+    EXPECT_NEAR(height(series.places().back()), glm::length(image.axes[2]) * (image.size[2] - 1),
+                1e-12);
+    for (const Vec3& place : series.places()) {
+      const Vec3 index = image.toIndex(1e-3 * Vec3(-place.x, -place.y, place.z));
+      EXPECT_GT(index.x, -1e-3);
+      EXPECT_GT(index.y, -1e-3);
+      EXPECT_LT(index.x, image.size[0] - LooseSeries::kColumns + 1e-3);
+      EXPECT_LT(index.y, image.size[1] - LooseSeries::kRows + 1e-3);
+    }
+    ASSERT_GE(image.notes.size(), 2U);
+    EXPECT_NE(image.notes[0].find("resampled on"), std::string::npos) << image.notes[0];
+  }
+  EXPECT_GT(known, 5000);
+  EXPECT_GT(unknown, 500);
+}
+
+TEST(DicomResampled, ATiltedSeriesGetsRightAnglesAndAnEvenOneStaysAsItIs) {
+  const TempFolder folder;
+  const std::string tilted = writeSeries(folder, "t", 5, {0, 0.5, 2}, kAsItIs);
+  EXPECT_GT(std::fabs(glm::dot(readImage(tilted).axes[1], readImage(tilted).axes[2])), 1e-7);
+  const Image straight = readImage(tilted, resamplingOn());
+  EXPECT_NEAR(glm::dot(straight.axes[1], straight.axes[2]), 0.0, 1e-15);
+  EXPECT_EQ(straight.size, (std::array{6, 5, 5}));  // a voxel more, for 4 slices times 0.5 of 2 mm
+  EXPECT_NE(straight.notes[0].find("sheared by 14"), std::string::npos) << straight.notes[0];
+
+  const std::string even = writeSeries(folder, "e", 5, {0, 0, 2}, kAsItIs);
+  const Image plain = readImage(even);
+  const Image asked = readImage(even, resamplingOn());
+  EXPECT_EQ(asked.values, plain.values);
+  EXPECT_EQ(asked.axes, plain.axes);
+  EXPECT_TRUE(asked.notes.empty());
+}
+
+TEST(DicomResampled, AMissingSliceIsFilledInAndItsErrorIsStated) {
+  // Values z^2: a curvature of 2, so that in the middle of a gap of 4 mm linear values are off by
+  // 2 * 4^2 / 8 = 4.
+  const TempFolder folder;
+  const std::string path = writeSeries(folder, "s", 6, {0, 0, 2}, [](DicomFile& file, int k) {
+    const int z = 2 * (k < 3 ? k : k + 1);
+    file.position = "0\\0\\" + std::to_string(z);
+    file.intercept = "0";
+    file.pixels.assign(24, z * z);
+  });
+  const Image image = readImage(path, resamplingOn());
+  ASSERT_EQ(image.size, (std::array{6, 4, 7}));
+  EXPECT_EQ(image.at(2, 2, 3), 40.0F);  // between 16 and 64, where 36 would be right
+  EXPECT_EQ(image.at(2, 2, 4), 64.0F);
+  ASSERT_EQ(image.notes.size(), 2U);
+  EXPECT_NE(image.notes[0].find("a slice may be missing: resampled on 6 x 4 x 7 voxels"),
+            std::string::npos)
+      << image.notes[0];
+  EXPECT_NE(image.notes[1].find("off by about 4 (RMS)"), std::string::npos) << image.notes[1];
+}
+
+TEST(DicomResampled, OnlySeriesAre) {
+  const TempFolder folder;
+  const std::string mask = folder.file("a.nii.gz", "");
+  EXPECT_EQ(errorOf([&] { (void)readImage(mask, resamplingOn()); }).problem().code, "image.option");
 }
 
 struct BadSeries {

@@ -25,6 +25,7 @@ struct ScanOptions {
   std::string space;         ///< mesh, NRRD image: "RAS" or "LPS"; empty: as the file says
   std::optional<int> frame;  ///< 4-D image
   std::string series;        ///< DICOM
+  bool resample = false;     ///< DICOM series
 };
 
 /// Which device the hand holds.

@@ -23,6 +23,7 @@ vdb::ImageOptions imageOptions(const ScanOptions& options) {
   out.space = spaceOf(options);
   out.frame = options.frame;
   out.series = options.series;
+  out.resample = options.resample;
   return out;
 }
 
@@ -60,6 +61,7 @@ void refuseScanOptions(const ScanOptions& options, bool is_mesh) {
   refuse(!options.affine.empty(), "--affine", "images");
   refuse(options.frame.has_value(), "--frame", "images");
   refuse(!options.series.empty(), "--series", "DICOM folders");
+  refuse(options.resample, "--resample", "DICOM series");
   refuse(!is_mesh && !options.space.empty(), "--space", "meshes and NRRD images");
 }
 

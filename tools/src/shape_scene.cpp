@@ -34,6 +34,7 @@ void refuseImageOptions(const TouchOptions& o) {
   refuse(!o.scan.affine.empty(), "--affine", "images");
   refuse(o.scan.frame.has_value(), "--frame", "images");
   refuse(!o.scan.series.empty(), "--series", "DICOM folders");
+  refuse(o.scan.resample, "--resample", "DICOM series");
 }
 
 /// A valid name for a layer that is not taken yet.
@@ -119,6 +120,7 @@ void addImage(const TouchOptions& o, const std::string& file, Parts& parts) {
   image.addText("space", o.scan.space);
   if (o.scan.frame) image.add("frame", std::to_string(*o.scan.frame));
   image.addText("series", o.scan.series);
+  if (o.scan.resample) image.add("resample", "true");
   parts.images += "  scan: " + image.text() + "\n";
   const auto add_layer = [&](const std::string& name, const std::string& kind, Entries surface) {
     surface.add("voxel", voxelOf(o));

@@ -70,6 +70,7 @@ const std::string& ImageFile::contentKey() {
     if (image_ && !state_.isOfTheSame(decoded_)) state_ = {};
     key.add(static_cast<int>(options_.affine)).add(static_cast<int>(options_.space));
     key.add(options_.frame.value_or(-1)).add(options_.series);
+    if (options_.resample) key.add("resample");
     // Their order is the order of the labels.
     for (const std::string& file : options_.with) key.add(fileName(file));
     key.add("priority");
@@ -139,6 +140,7 @@ ImageOptions readImageOptions(const MapReader& reader) {
   options.space = readSpace(reader);
   if (reader.has("frame")) options.frame = static_cast<int>(reader.value("frame"));
   options.series = reader.text("series");
+  options.resample = reader.flag("resample");
   for (const std::string& file : readTexts(reader, "with")) {
     options.with.push_back(reader.loader().resolvePath(file));
   }
@@ -150,7 +152,8 @@ ImageOptions readImageOptions(const MapReader& reader) {
 std::string keyOf(const std::string& path, const ImageOptions& options) {
   std::string key = path + '\n' + std::to_string(static_cast<int>(options.affine)) + '\n' +
                     std::to_string(static_cast<int>(options.space)) + '\n' +
-                    std::to_string(options.frame.value_or(-1)) + '\n' + options.series;
+                    std::to_string(options.frame.value_or(-1)) + '\n' + options.series +
+                    (options.resample ? "\nresample" : "");
   for (const std::string& file : options.with) key += '\n' + file;
   key += '\n';
   for (const std::string& name : options.priority) key += '\n' + name;

@@ -19,6 +19,9 @@ void addScan(CLI::App& app, const char* group, ScanOptions& o, bool meshes) {
   add(app, group, "--frame", "N", o.frame, "which volume of a 4-D image, from 0")
       ->check(CLI::Range(0, 1000000));
   add(app, group, "--series", "UID", o.series, "which DICOM series of a folder that holds several");
+  addFlag(app, group, "--resample", o.resample,
+          "a DICOM series whose slices are unevenly spaced, off one line or sheared becomes voxels "
+          "with right angles, linear between slices");
 }
 
 namespace {

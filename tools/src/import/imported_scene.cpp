@@ -111,6 +111,7 @@ class SceneWriter {
     if (!o.space.empty()) keys += ", space: " + o.space;
     if (o.frame) keys += ", frame: " + std::to_string(*o.frame);
     if (!o.series.empty()) keys += ", series: " + sceneWord(o.series);
+    if (o.resample) keys += ", resample: true";
     return keys;
   }
 

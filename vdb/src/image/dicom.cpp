@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -55,10 +56,41 @@ std::pair<DicomKind, std::string> chosenFile(const std::string& path, const Imag
 }
 
 void checkKind(DicomKind kind, const ImageOptions& options, const std::string& path) {
+  if (kind != DicomKind::kSlices && options.resample) {
+    throw inputError("image.option", "resampling applies to DICOM series", "leave it out", path);
+  }
   if (kind != DicomKind::kSlices || options.priority.empty()) return;
   throw inputError("image.option",
                    "a priority applies to structures that were segmented one by one",
                    "leave it out", path);
+}
+
+/// Puts the values of `series`, which are those of its slices, on the voxels that `image` has.
+void resample(const DicomSeries& series, Image& image) {
+  const DicomElements& first = series.slices.front();
+  const int columns = first.shortAt(dicom::kColumns).value_or(0);
+  const int rows = first.shortAt(dicom::kRows).value_or(0);
+  const bool is_straight =
+      std::all_of(series.places.begin(), series.places.end(), [](const SlicePlace& each) {
+        return std::fabs(each.column) < 0.01 && std::fabs(each.row) < 0.01;
+      });
+  if (is_straight && series.places.size() > 2) {
+    const auto slice_size = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    image.notes.push_back(
+        "between the slices farthest apart they are off by about " +
+        shortNumber(linearError(series.places, slice_size, image.values), 3) +
+        " (RMS), as the slices themselves show when each is compared with its neighbors");
+  }
+  image.values = resampled(*series.even, series.places, columns, rows, image.values);
+  if (!is_straight) {
+    const auto unknown = std::count_if(image.values.begin(), image.values.end(),
+                                       [](float value) { return std::isnan(value); });
+    if (unknown > 0) {
+      image.notes.push_back(std::to_string(unknown) +
+                            " voxels beside the slices have no value (NaN): surfaces take them "
+                            "as outside");
+    }
+  }
 }
 
 }  // namespace
@@ -68,7 +100,7 @@ Image readDicom(const std::string& path, const ImageOptions& options) try {
   checkKind(kind, options, path);
   if (kind == DicomKind::kSegmentation) return readDicomSegmentation(file, options);
   if (kind == DicomKind::kStructureSet) return readDicomStructureSet(file, options);
-  const DicomSeries series = findDicomSeries(path, options.series);
+  const DicomSeries series = findDicomSeries(path, options.series, options.resample);
   Image image = emptyImage(path, series.size, series.place, series.notes);
   const std::vector<std::vector<std::int32_t>> pixels = readDicomPixels(series.slices);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -86,6 +118,7 @@ Image readDicom(const std::string& path, const ImageOptions& options) try {
       image.values.push_back(static_cast<float>(stored * slope + intercept));
     }
   }
+  if (series.even) resample(series, image);
   return image;
 } catch (const std::bad_alloc&) {
   throw notEnoughMemory("dicom", path);
@@ -96,7 +129,7 @@ ImageInfo readDicomInfo(const std::string& path, const ImageOptions& options) {
   checkKind(kind, options, path);
   if (kind == DicomKind::kSegmentation) return readDicomSegmentationInfo(file);
   if (kind == DicomKind::kStructureSet) return readDicomStructureSetInfo(file);
-  const DicomSeries series = findDicomSeries(path, options.series);
+  const DicomSeries series = findDicomSeries(path, options.series, options.resample);
   const DicomElements& first = series.slices.front();
   ImageInfo info = infoOf(series.size, series.place, series.notes);
   info.data_type = (first.shortAt(dicom::kPixelRepresentation).value_or(0) == 1 ? "int" : "uint") +

@@ -137,53 +137,84 @@ void requireSame(const Slice& first, const Slice& s) {
   }
 }
 
-/// [mm] The step from slice to slice; throws if slices are not evenly spaced on a line.
-Vec3 stepOf(const std::vector<Slice>& slices, const std::string& path) {
+/// How slices follow one another.
+struct Stack {
+  Vec3 step{0.0};       ///< [mm] from slice to slice, on average
+  double usual = 0.0;   ///< [mm] along the normal, the median
+  double widest = 0.0;  ///< [mm]
+  std::string uneven;   ///< why they are not evenly spaced on a line; empty: they are
+};
+
+/// Throws if two slices lie in the same place.
+Stack stackOf(const std::vector<Slice>& slices, const std::string& path) {
   std::vector<double> gaps;
   for (std::size_t i = 1; i < slices.size(); ++i) {
     gaps.push_back(slices[i].height - slices[i - 1].height);
+    if (gaps.back() < 1e-3) {
+      throw inputError(
+          "dicom.duplicate",
+          nameOf(slices[i - 1]) + " and " + nameOf(slices[i]) + " lie in the same place",
+          "a series over time, or files twice: keep one volume in a folder of its own", path);
+    }
   }
   std::vector<double> ordered = gaps;
   std::sort(ordered.begin(), ordered.end());
-  const double usual = ordered[ordered.size() / 2];
-  for (std::size_t i = 0; i < gaps.size(); ++i) {
-    const std::string between = nameOf(slices[i]) + " and " + nameOf(slices[i + 1]);
-    if (gaps[i] < 1e-3) {
-      throw inputError("dicom.duplicate", between + " lie in the same place",
-                       "a series over time, or files twice: keep one volume in a folder of its own",
-                       path);
-    }
-    if (std::abs(gaps[i] - usual) > kEvenSteps * usual) {
-      throw inputError("dicom.spacing",
-                       "slices are not evenly spaced: from " + nameOf(slices[i]) + " to " +
-                           nameOf(slices[i + 1]) + " it is " + shortNumber(gaps[i], 3) +
-                           " mm, elsewhere " + shortNumber(usual, 3) +
-                           (gaps[i] > 1.5 * usual ? "; a slice may be missing" : ""),
-                       "complete the series, or resample it evenly", path);
-    }
-  }
-  const Vec3 step =
+  Stack out;
+  out.usual = ordered[ordered.size() / 2];
+  out.widest = ordered.back();
+  out.step =
       (slices.back().position - slices.front().position) / static_cast<double>(slices.size() - 1);
-  for (std::size_t i = 0; i < slices.size(); ++i) {
-    const Vec3 expected = slices.front().position + static_cast<double>(i) * step;
-    if (glm::length(slices[i].position - expected) > kEvenSteps * glm::length(step)) {
-      throw inputError("dicom.spacing",
-                       nameOf(slices[i]) + " is " +
-                           shortNumber(glm::length(slices[i].position - expected), 3) +
-                           " mm off the line that the others' positions are on",
-                       "complete the series, or resample it evenly", path);
-    }
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    if (std::abs(gaps[i] - out.usual) <= kEvenSteps * out.usual) continue;
+    out.uneven = "slices are not evenly spaced: from " + nameOf(slices[i]) + " to " +
+                 nameOf(slices[i + 1]) + " it is " + shortNumber(gaps[i], 3) + " mm, elsewhere " +
+                 shortNumber(out.usual, 3) +
+                 (gaps[i] > 1.5 * out.usual ? "; a slice may be missing" : "");
+    return out;
   }
-  return step;
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const Vec3 expected = slices.front().position + static_cast<double>(i) * out.step;
+    const double off = glm::length(slices[i].position - expected);
+    if (off <= kEvenSteps * glm::length(out.step)) continue;
+    out.uneven = nameOf(slices[i]) + " is " + shortNumber(off, 3) +
+                 " mm off the line that the others' positions are on";
+    return out;
+  }
+  return out;
+}
+
+/// [degrees] between the way from slice to slice and their normal.
+double shearOf(const Slice& first, const Vec3& step) {
+  const Vec3 normal = glm::cross(first.along_row, first.along_column);
+  return std::acos(std::clamp(glm::dot(glm::normalize(step), normal), -1.0, 1.0)) * kDegrees;
+}
+
+std::vector<SlicePlace> placesOf(const std::vector<Slice>& slices) {
+  const Slice& first = slices.front();
+  std::vector<SlicePlace> out;
+  for (const Slice& s : slices) {
+    const Vec3 moved = s.position - first.position;
+    out.push_back({s.height - first.height, glm::dot(moved, first.along_row) / first.column_spacing,
+                   glm::dot(moved, first.along_column) / first.row_spacing});
+  }
+  return out;
 }
 
 /// Adds notes for the user about a series that was read.
-void tell(const std::vector<Slice>& slices, const Vec3& step, std::vector<std::string>& notes) {
+void tell(const std::vector<Slice>& slices, const Stack& stack, const DicomSeries& series,
+          std::vector<std::string>& notes) {
   const Slice& first = slices.front();
-  const Vec3 normal = glm::cross(first.along_row, first.along_column);
-  const double shear =
-      std::acos(std::clamp(glm::dot(glm::normalize(step), normal), -1.0, 1.0)) * kDegrees;
-  if (shear > kShearToTell) {
+  const double shear = shearOf(first, stack.step);
+  if (series.even) {
+    std::string why = stack.uneven;
+    if (why.empty()) {
+      why = "the slices are sheared by " + shortNumber(shear, 3) + " degrees (a tilted gantry)";
+    }
+    notes.push_back(why + ": resampled on " + shapeText(series.size) +
+                    " voxels with right angles, " + shortNumber(series.even->step, 4) +
+                    " mm from slice to slice; values between two slices, at most " +
+                    shortNumber(stack.widest, 4) + " mm apart, are linear");
+  } else if (shear > kShearToTell) {
     notes.push_back("the slices are sheared by " + shortNumber(shear, 3) +
                     " degrees (a tilted gantry): so are the voxels");
   }
@@ -295,7 +326,7 @@ bool isDicomFolder(const std::string& path) {
   return false;
 }
 
-DicomSeries findDicomSeries(const std::string& path, const std::string& wanted) {
+DicomSeries findDicomSeries(const std::string& path, const std::string& wanted, bool resample) {
   std::error_code failure;
   if (!fs::exists(path, failure))
     throw inputError("dicom.missing", "no such file or folder", {}, path);
@@ -321,18 +352,31 @@ DicomSeries findDicomSeries(const std::string& path, const std::string& wanted) 
                      "keep all files of the series in one folder", path);
   }
   DicomSeries out;
-  const Vec3 step = stepOf(slices, path);
+  const Stack stack = stackOf(slices, path);
+  if (!stack.uneven.empty() && !resample) {
+    throw inputError("dicom.spacing", stack.uneven,
+                     "complete the series, or have it resampled: resample: true (on the command "
+                     "line --resample)",
+                     path);
+  }
   Place lps;
   lps.axes[0] = first.along_row * first.column_spacing;
   lps.axes[1] = first.along_column * first.row_spacing;
-  lps.axes[2] = step;
+  lps.axes[2] = stack.step;
   lps.origin = first.position;
+  out.size = {columns, rows, static_cast<int>(slices.size())};
+  if (resample && (!stack.uneven.empty() || shearOf(first, stack.step) > kShearToTell)) {
+    lps.axes[2] = glm::cross(first.along_row, first.along_column);
+    out.places = placesOf(slices);
+    out.even = evenSlices(out.places, stack.usual, columns, rows, lps);
+    lps = out.even->place;
+    out.size = out.even->size;
+  }
   out.place = scaled(turned(lps), 1e-3);
   if (!isUsable(out.place)) {
     throw inputError("dicom.singular", "the slices' positions give the voxels no volume", {}, path);
   }
-  out.size = {columns, rows, static_cast<int>(slices.size())};
-  tell(slices, step, out.notes);
+  tell(slices, stack, out, out.notes);
   if (left_out.without_pixels > 0) {
     out.notes.push_back(std::to_string(left_out.without_pixels) +
                         " DICOM files without pixels are passed over");

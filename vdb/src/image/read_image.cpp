@@ -52,6 +52,7 @@ void checkOptions(Format format, const ImageOptions& options, const std::string&
     throw inputError("image.option", what + " applies to " + formats, "leave it out", path);
   };
   refuse(format != Format::kDicom && !options.series.empty(), "a series", "DICOM folders");
+  refuse(format != Format::kDicom && options.resample, "resampling", "DICOM series");
   // Each mask is checked by itself.
   if (format == Format::kMasks) return;
   refuse(format != Format::kDicom && !options.priority.empty(), "a priority",

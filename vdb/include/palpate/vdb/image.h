@@ -77,6 +77,9 @@ struct ImageOptions {
   Space space = Space::kStated;  ///< of an NRRD file whose space is not an anatomical one
   std::optional<int> frame;      ///< of a 4-D file, from 0; not given: 4-D is refused
   std::string series;            ///< DICOM: UID of the series, if a folder holds several
+  /// DICOM series: slices that are unevenly spaced, off one line or sheared become voxels with
+  /// right angles; values between slices are linear. Without it the first two are refused.
+  bool resample = false;
   /// Further files: the first file and each of these is a mask, each for a structure of its own.
   std::vector<std::string> with = {};
   /// Structures that were segmented one by one: where some overlap, the first of these names gets

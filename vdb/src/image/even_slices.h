@@ -1,0 +1,47 @@
+#pragma once
+/// A series whose slices are uneven, or not stacked straight, resampled on voxels that are.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "image/place.h"
+
+namespace palpate::vdb {
+
+/// Where a slice lies, as seen from the first one.
+struct SlicePlace {
+  double height = 0.0;  ///< [mm] along the normal, rising
+  double column = 0.0;  ///< [voxels] by which it is shifted along its rows
+  double row = 0.0;     ///< [voxels] along its columns
+};
+
+/// The new voxels. Along the normal they are evenly spaced from the first slice to the last, about
+/// as far apart as most slices are; across it they hold all that a slice holds.
+struct EvenSlices {
+  std::array<int, 3> size{};
+  Place place;           ///< [unit of the one given]
+  double step = 0.0;     ///< [mm] along the normal
+  int first_column = 0;  ///< [voxels] of the first slice, at which the new ones begin; 0 or less
+  int first_row = 0;
+};
+
+/// `place` has the first slice's axes and origin; its third axis is one mm along the normal. Two
+/// slices or more.
+[[nodiscard]] EvenSlices evenSlices(const std::vector<SlicePlace>& slices, double usual_gap,
+                                    int columns, int rows, const Place& place);
+
+/// The values of `even`: linear between two slices, bilinear within each. NaN where one of the two
+/// does not reach. `values` are those of the slices, columns first.
+[[nodiscard]] std::vector<float> resampled(const EvenSlices& even,
+                                           const std::vector<SlicePlace>& slices, int columns,
+                                           int rows, const std::vector<float>& values);
+
+/// [values] How far linear values may be off between the two slices that are farthest apart, RMS,
+/// as the slices themselves say: each is compared with what its two neighbors would give in its
+/// place, and the curvature that this shows bends the widest gap too: h^2 / 8 of it. Of slices that
+/// are stacked straight; three or more.
+[[nodiscard]] double linearError(const std::vector<SlicePlace>& slices, std::size_t slice_size,
+                                 const std::vector<float>& values);
+
+}  // namespace palpate::vdb
