@@ -7,6 +7,9 @@
 #include <map>
 #include <optional>
 #include <random>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tools/imported.h"
 #include "vdb/made_scans.h"
@@ -230,6 +233,87 @@ TEST(ImportWay, ATargetThatThereIsNotIsNamed) {
   EXPECT_EQ(to("9").exit_code, 3);
   EXPECT_EQ(to("artery").exit_code, 3) << "the image holds none";
   EXPECT_EQ(to("3").exit_code, 0);
+}
+
+/// A file of Slicer's with points in LPS, in mm.
+std::string markupsOf(const std::vector<std::pair<std::string, Vec3>>& ras) {
+  Json points = Json::array();
+  for (const auto& [label, p] : ras) {
+    points.push_back({{"label", label}, {"position", {-p.x, -p.y, p.z}}});
+  }
+  Json list = {{{"type", "Fiducial"}, {"coordinateSystem", "LPS"}, {"controlPoints", points}}};
+  return Json{{"markups", list}}.dump();
+}
+
+TEST(ImportWay, LeadsToAPointThatWasMarkedInSlicer) {
+  const TempFolder folder;
+  Head head;
+  head.target = Vec3(0.0, 0.0, 4.0);
+  (void)planned(folder, imageOf(head));
+  const auto to = [&](const std::vector<std::pair<std::string, Vec3>>& points) {
+    (void)folder.file("goal.mrk.json", markupsOf(points));
+    return runPalpate(
+        {"import", "head.nii.gz", "--names", "names.csv", "--materials", "table.yaml", "--to",
+         "goal.mrk.json", "-o", "goal.yaml", "--way", "way.mrk.json", "--force", "--json"},
+        folder.path());
+  };
+  // In the brain, beside the target: by the opening above, whatever is shortest.
+  const Vec3 goal(3.0, -2.0, 10.0);
+  CommandResult result = to({{"P-1", goal}});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  Json way = parseOnly(result)["way"];
+  EXPECT_EQ(way["target"], "P-1");
+  EXPECT_LT(glm::length(pointOf(way["to_m"]) - goal), 1e-9);
+  EXPECT_TRUE(walked(imageOf(head), pointOf(way["from_m"]), goal));
+  // A line of Slicer's: from the entry to the target, in LPS.
+  const Json line = Json::parse(textOf(folder.path("way.mrk.json")))["markups"][0];
+  EXPECT_EQ(line["type"], "Line");
+  EXPECT_EQ(line["coordinateSystem"], "LPS");
+  ASSERT_EQ(line["controlPoints"].size(), 2U);
+  for (const auto& [n, key] : {std::pair{0, "entry_m"}, {1, "to_m"}}) {
+    const Json& at = line["controlPoints"][static_cast<std::size_t>(n)]["position"];
+    const Vec3 lps = 1e-3 * pointOf(at);
+    EXPECT_LT(glm::length(Vec3(-lps.x, -lps.y, lps.z) - pointOf(way[key])), 1e-9) << key;
+  }
+  // From an entry, whichever of the two points it is: along that line, open or not.
+  const Vec3 entry(6.0, 4.0, 30.0);
+  for (const auto& points : {std::vector<std::pair<std::string, Vec3>>{{"", entry}, {"", goal}},
+                             {{"Target", goal}, {"", entry}},
+                             {{"my target", goal}, {"Entry-1", entry}}}) {
+    result = to(points);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    way = parseOnly(result)["way"];
+    const Vec3 along = glm::normalize(pointOf(way["from_m"]) - goal);
+    // Ends are written in tenths of a millimeter.
+    EXPECT_GT(glm::dot(along, glm::normalize(entry - goal)), 1.0 - 2e-5);
+  }
+  const CommandResult closed = to({{"entry", Vec3(30.0, 0.0, 4.0)}, {"target", goal}});
+  EXPECT_EQ(closed.exit_code, 3);
+  EXPECT_NE(closed.out.find("it meets 'skull' (bone)"), std::string::npos) << closed.out;
+}
+
+TEST(ImportWay, AFileOfPointsThatIsNoTargetIsRefused) {
+  const TempFolder folder;
+  (void)planned(folder, imageOf({}));
+  const auto refused = [&](const std::string& text) {
+    (void)folder.file("goal.mrk.json", text);
+    const CommandResult result =
+        runPalpate({"import", "head.nii.gz", "--names", "names.csv", "--materials", "table.yaml",
+                    "--to", "goal.mrk.json", "--dry-run"},
+                   folder.path());
+    EXPECT_EQ(result.exit_code, 3) << text;
+    return result.err;
+  };
+  const Vec3 middle(0.0);
+  EXPECT_NE(refused(markupsOf({})).find("has 0 points"), std::string::npos);
+  EXPECT_NE(refused(markupsOf({{"", middle}, {"", middle}, {"", middle}})).find("has 3 points"),
+            std::string::npos);
+  EXPECT_NE(refused(markupsOf({{"", middle}, {"", Vec3(0.5, 0, 0)}})).find("less than 1 mm"),
+            std::string::npos);
+  EXPECT_NE(refused(markupsOf({{"tip", Vec3(29.0, 0, 0)}})).find("'tip' at [29, 0, 0] mm (RAS)"),
+            std::string::npos);
+  EXPECT_NE(refused("{\n\n \"markups\": [}").find("line 3 is not JSON"), std::string::npos);
+  EXPECT_NE(refused("[]").find("the file has no 'markups'"), std::string::npos);
 }
 
 }  // namespace

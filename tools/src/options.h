@@ -165,7 +165,9 @@ struct ImportOptions {
   std::string codes;      ///< table whose label numbers these are: "freesurfer"; empty: none
   bool strict = false;    ///< labels that fit no tissue are an error
   std::string materials;  ///< table of tissues; empty: the project's
-  std::string to;         ///< region or label to find a way to; empty: none
+  /// Region, label or Markups file with a point to find a way to; empty: none.
+  std::string to;
+  std::string way;  ///< Markups file to write the way to; empty: none
   std::string voxel;
   ScanOptions reading;                ///< of all images
   std::vector<std::string> priority;  ///< where structures overlap, the first one gets the voxel

@@ -12,7 +12,9 @@
 #include "palpate/vdb/mesh.h"
 #include "palpate/vdb/text.h"
 #include "scan_options.h"
+#include "slicer_markups.h"
 #include "text.h"
+#include "trace_reader.h"
 #include "verbs.h"
 
 namespace palpate::tools {
@@ -128,14 +130,43 @@ Written asImage(const ConvertOptions& options, Console& console) {
   return out;
 }
 
+/// The path of the proxy of a trace, as a curve that Slicer loads.
+Written asCurve(const ConvertOptions& options) {
+  constexpr double kTolerance = 5e-5;  // [m] a tenth of what a scan resolves
+  const std::string& input = options.bake.input;
+  if (!vdb::hasExtension(input, ".csv")) {
+    throw usageError("only a trace becomes a curve of Slicer's, not " + input,
+                     "give what `palpate touch --trace FILE.csv` wrote");
+  }
+  TraceReader reader(input);
+  std::vector<Vec3> path;
+  std::size_t rows = 0;
+  for (TraceLine line; reader.next(line); ++rows) {
+    if (line.is_finite) path.push_back(line.proxy);
+  }
+  if (path.empty()) throw inputError("trace.empty", "the trace holds no place", {}, input);
+  Markup curve{"Curve", stemOf(input), {}};
+  for (const Vec3& point : thinned(path, kTolerance)) curve.points.push_back({"", point});
+  Written out;
+  out.bytes = markupsText({curve});
+  out.json = {{"kind", "curve"},
+              {"ticks", rows},
+              {"points", curve.points.size()},
+              {"tolerance_m", kTolerance}};
+  out.text = "a curve of " + formatCount(curve.points.size()) + " points, within 0.05 mm of the " +
+             "path of " + formatCount(rows) + " ticks\n";
+  return out;
+}
+
 }  // namespace
 
 Report run(const ConvertOptions& options, const GeneralOptions& general, Console& console) {
   const std::string& output = options.bake.output;
+  const bool to_curve = isMarkupsName(output);
   const bool to_grid = vdb::hasExtension(output, ".vdb");
   const bool to_image = isImageName(output);
-  const InputKind kind = inputKind(options.bake.input);
-  if (!options.to_units.empty() && (to_grid || to_image)) {
+  const InputKind kind = to_curve ? InputKind::kGrid : inputKind(options.bake.input);
+  if (!options.to_units.empty() && (to_grid || to_image || to_curve)) {
     throw usageError("--to-units applies to meshes", "a grid's unit is that of its input");
   }
   if (to_image && kind == InputKind::kImage && !options.bake.above && options.bake.labels.empty() &&
@@ -147,7 +178,9 @@ Report run(const ConvertOptions& options, const GeneralOptions& general, Console
 
   OutputFiles files(general);
   files.announce(output, {options.bake.input, options.bake.names});
-  const Written written = to_image ? asImage(options, console) : asMesh(options, console);
+  const Written written = to_curve   ? asCurve(options)
+                          : to_image ? asImage(options, console)
+                                     : asMesh(options, console);
   checkStop();
   files.write(output, written.bytes);
   files.commit();

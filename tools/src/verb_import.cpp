@@ -13,6 +13,7 @@
 #include "palpate/vdb/scan_surface.h"
 #include "palpate/vdb/text.h"
 #include "scan_options.h"
+#include "slicer_markups.h"
 #include "text.h"
 #include "verbs.h"
 
@@ -260,10 +261,23 @@ std::string withoutExtension(const std::string& path) {
   return (fs::path(path).parent_path() / fs::path(path).stem()).string();
 }
 
+void checkWay(const ImportOptions& options) {
+  if (options.way.empty()) return;
+  if (options.to.empty()) {
+    throw Error(ErrorKind::kUsage,
+                {"usage.import", "--way writes the way that --to finds", "give --to TARGET"});
+  }
+  if (!isMarkupsName(options.way)) {
+    throw Error(ErrorKind::kUsage,
+                {"usage.import", "the way " + options.way + " must end in .mrk.json", ""});
+  }
+}
+
 }  // namespace
 
 Report run(const ImportOptions& options, const GeneralOptions& general, Console& console) {
   const bool is_written = !options.dry_run;
+  checkWay(options);
   OutputFiles files(general);
   const std::string changed_labels = withoutExtension(options.output) + ".labels.nii.gz";
   if (is_written) {
@@ -276,6 +290,10 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
     inputs.insert(inputs.end(), options.scans.begin(), options.scans.end());
     files.announce(options.output, inputs);
     if (options.min_island) files.announce(changed_labels, inputs);
+    if (!options.way.empty()) {
+      inputs.push_back(options.to);
+      files.announce(options.way, inputs);
+    }
   }
   const TissueTable tissues =
       options.materials.empty() ? ownTissueTable() : readTissueTable(options.materials);
@@ -313,6 +331,10 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
       report(console.progress(), "write labels", -1.0);
       files.write(changed_labels, vdb::encodeLabels(scan.labels, true));
       written.push_back(changed_labels);
+    }
+    if (way && !options.way.empty()) {
+      files.write(options.way, wayMarkups(*way));
+      written.push_back(options.way);
     }
     checkStop();
     files.commit();

@@ -212,7 +212,8 @@ on the way, as `palpate bake` does. A file has no more than one mesh or image, s
 layers or grids one must be named with --layer. A grid becomes another grid by --voxel; by --above
 or --labels if it holds densities or labels; and by itself if it is turned, stretched or of
 doubles, or if its inside is not marked: that is mended whatever becomes of the grid, and refused
-where the band has holes.)",
+where the band has holes. A trace of `palpate touch` (.csv) becomes a curve for 3D Slicer
+(.mrk.json): the path of the proxy.)",
       {},
       defineConvert,
       [](const Invocation& i) {

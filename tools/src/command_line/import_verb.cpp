@@ -47,7 +47,9 @@ void defineImport(CLI::App& app, Invocation& invocation) {
   g = "A way for a needle";
   add(app, g, "--to", "TARGET", o.to,
       "the shortest straight way to a region or a label that ports let through, clear of bone, "
-      "vessels and nerves: reported, and suggested in the scene");
+      "vessels and nerves: reported, and suggested in the scene; or to a point marked in Slicer "
+      "(.mrk.json), from a second point if the file has one");
+  add(app, g, "--way", "FILE.mrk.json", o.way, "--to: write the way as a line that Slicer loads");
   g = "Materials and grids";
   addFlag(app, g, "--hounsfield", o.hounsfield,
           "--image is a CT in Hounsfield units: stiffness varies with it, where the table of "

@@ -13,6 +13,7 @@
 #include "import/region_sampler.h"
 #include "import/way_target.h"
 #include "palpate/core/error.h"
+#include "slicer_markups.h"
 #include "text.h"
 
 namespace palpate::tools {
@@ -91,13 +92,23 @@ class NeedleWayFinder {
 
   NeedleWay find() {
     std::optional<NeedleWay> best;
+    const int directions = target_.entry ? 1 : kDirections;
     for (const double clearance : {kClearance, 0.0}) {
       closed_.clear();
-      for (int n = 0; n < kDirections; ++n) {
-        const std::optional<NeedleWay> way = along(target_.place, direction(n), clearance);
+      for (int n = 0; n < directions; ++n) {
+        const Vec3 outwards =
+            target_.entry ? glm::normalize(*target_.entry - target_.place) : direction(n);
+        const std::optional<NeedleWay> way = along(target_.place, outwards, clearance);
         if (way && (!best || way->length() < best->length() - 1e-9)) best = way;
       }
       if (best) return rounded(*best);
+    }
+    if (target_.entry) {
+      throw inputError("import.way",
+                       "the straight way from the marked entry to '" + target_.name +
+                           "' is closed: it meets " + nameOf(closed_.begin()->first),
+                       "mark another entry, or leave it out: then the shortest open way is found",
+                       scan_.labels.source);
     }
     throw inputError("import.way",
                      "every straight way to '" + target_.name + "' is closed: of " +
@@ -125,6 +136,7 @@ class NeedleWayFinder {
     if (clearance > 0.0 && !isClear(to, outwards, body, clearance)) return std::nullopt;
     NeedleWay way;
     way.target = target_.name;
+    way.is_given = target_.entry.has_value();
     way.to = to;
     way.entry = to + body * outwards;
     way.from = to + (body + kBefore) * outwards;
@@ -231,6 +243,12 @@ class NeedleWayFinder {
     return *nearby;
   }
 
+  [[nodiscard]] std::string nameOf(std::size_t region) const {
+    const Tissue* tissue = tissueOf(region);
+    if (tissue == nullptr) return "the image's border";
+    return "'" + scan_.nameOf(region) + "' (" + tissue->name + ")";
+  }
+
   [[nodiscard]] std::string whatCloses() const {
     std::vector<std::pair<int, std::size_t>> most;
     for (const auto& [region, count] : closed_) most.emplace_back(count, region);
@@ -239,10 +257,7 @@ class NeedleWayFinder {
     constexpr std::size_t kTold = 3;
     for (std::size_t n = 0; n < std::min(most.size(), kTold); ++n) {
       const auto& [count, region] = most[n];
-      const Tissue* tissue = tissueOf(region);
-      text += (n > 0 ? ", " : "") + formatCount(count) + " meet " +
-              (tissue == nullptr ? "the image's border"
-                                 : "'" + scan_.nameOf(region) + "' (" + tissue->name + ")");
+      text += (n > 0 ? ", " : "") + formatCount(count) + " meet " + nameOf(region);
     }
     return text + (most.size() > kTold ? ", the rest others" : "");
   }
@@ -271,7 +286,15 @@ NeedleWay needleWay(const ImportedScan& scan, const TissueTable& tissues,
 }
 
 SuggestedWay suggestedWay(const NeedleWay& way) {
-  return {"to " + way.target + " by the shortest way that is open", way.from, way.to};
+  return {"to " + way.target +
+              (way.is_given ? " from the marked entry" : " by the shortest way that is open"),
+          way.from, way.to};
+}
+
+std::string wayMarkups(const NeedleWay& way) {
+  return markupsText({{"Line",
+                       "way to " + way.target,
+                       {{"entry", way.entry}, {"target: " + way.target, way.to}}}});
 }
 
 }  // namespace palpate::tools

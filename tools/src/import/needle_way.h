@@ -20,9 +20,10 @@ struct WayPart {
 
 struct NeedleWay {
   std::string target;
-  Vec3 from{0.0};   ///< [m] outside the body
-  Vec3 entry{0.0};  ///< [m] where it meets the body
-  Vec3 to{0.0};     ///< [m] the deepest point of the target
+  bool is_given = false;  ///< the user chose the entry
+  Vec3 from{0.0};         ///< [m] outside the body
+  Vec3 entry{0.0};        ///< [m] where it meets the body
+  Vec3 to{0.0};           ///< [m] WayTarget::place, to a tenth of a millimeter
   /// From outside to the target. The predicted force is that of a slow needle: the cutting force of
   /// the tissue at the tip, friction along the part of the shaft that slides, and at a wall the
   /// force that opens it.
@@ -40,12 +41,16 @@ inline constexpr double kClearance = 2e-3;
 
 /// The shortest of all straight ways from outside to the target that cross walls only through
 /// ports, and touch neither rigid tissue nor tissue that the table wants spared. A way that keeps
-/// kClearance is preferred to one that does not. `target`: a region's or label's name, or a label.
+/// kClearance is preferred to one that does not. `target`: as wayTarget() takes it; one that has an
+/// entry leaves a single way.
 /// @throws Error (kInput): no such target; every way is closed, with the regions that close them.
 [[nodiscard]] NeedleWay needleWay(const ImportedScan& scan, const TissueTable& tissues,
                                   const std::string& target);
 
 /// For the scene's header.
 [[nodiscard]] SuggestedWay suggestedWay(const NeedleWay& way);
+
+/// The way as a line that Slicer loads, from the entry to the target.
+[[nodiscard]] std::string wayMarkups(const NeedleWay& way);
 
 }  // namespace palpate::tools

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "import/region_sampler.h"
 #include "palpate/core/error.h"
 #include "palpate/vdb/scan_surface.h"
+#include "slicer_markups.h"
+#include "text.h"
 
 namespace palpate::tools {
 namespace {
@@ -142,9 +147,57 @@ class Depths {
   std::vector<float> depth_;
 };
 
+/// Whether `label` has the word in it, in any case: "Entry-1".
+bool says(const std::string& label, const std::string& word) {
+  std::string lower = label;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower.find(word) != std::string::npos;
+}
+
+std::string placeText(const Vec3& place) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    text += (axis > 0 ? ", " : "[") + formatNumber(1e3 * place[axis], 5);
+  }
+  return text + "] mm (RAS)";
+}
+
+WayTarget markedTarget(const ImportedScan& scan, const std::string& file) {
+  std::vector<MarkupPoint> points;
+  for (const Markup& markup : readMarkups(file)) {
+    points.insert(points.end(), markup.points.begin(), markup.points.end());
+  }
+  if (points.empty() || points.size() > 2) {
+    throw inputError("import.target", "the file has " + std::to_string(points.size()) + " points",
+                     "keep one, the target, or two, the entry and the target", file);
+  }
+  const bool is_turned = points.size() == 2 && (says(points.front().label, "target") ||
+                                                says(points.back().label, "entry"));
+  if (is_turned) std::swap(points.front(), points.back());
+  WayTarget out;
+  out.place = points.back().position;
+  out.name = points.back().label.empty() ? "the marked point" : points.back().label;
+  if (points.size() == 2) {
+    out.entry = points.front().position;
+    if (glm::length(*out.entry - out.place) < 1e-3) {
+      throw inputError("import.target", "its two points are less than 1 mm apart",
+                       "an entry lies where the needle goes in", file);
+    }
+  }
+  out.region = RegionSampler(scan).at(out.place).region;
+  if (out.region == scan.survey.outside()) {
+    throw inputError(
+        "import.target", "'" + out.name + "' at " + placeText(out.place) + " is outside the body",
+        "mark it in the image that the labels are of, in the same patient space", file);
+  }
+  return out;
+}
+
 }  // namespace
 
 WayTarget wayTarget(const ImportedScan& scan, const std::string& target) {
+  if (isMarkupsName(target)) return markedTarget(scan, target);
   const Labels found = labelsOf(scan, target);
   return {found.name, found.region, Depths(scan.labels, found.labels).deepest()};
 }
