@@ -56,6 +56,7 @@ tissues:
   vessel: {labels: [artery], class: membrane, spared: true, stiffness: {value: 500 N/m, basis: assumed, source: round}, opens_at: {value: 1 N, basis: assumed, source: round}}
   fat: {labels: [fat], stiffness: {value: 300 N/m, basis: assumed, source: round}, opens_at: {value: 2 N, basis: assumed, source: round}, cutting: {value: 0.4 N, basis: assumed, source: round}, shaft: {value: 20 N/m, basis: assumed, source: round}}
   brain: {labels: [brain], stiffness: {value: 400 N/m, basis: assumed, source: round}, opens_at: {value: 0.5 N, basis: assumed, source: round}, cutting: {value: 0.2 N, basis: assumed, source: round}, shaft: {value: 10 N/m, basis: assumed, source: round}}
+  fluid: {labels: [fluid], class: fluid, viscosity: {value: 0.3 N.s/m, basis: assumed, source: round}}
   deep: {labels: [thalamus], stiffness: {value: 600 N/m, basis: assumed, source: round}, opens_at: {value: 0.7 N, basis: assumed, source: round}, cutting: {value: 0.3 N, basis: assumed, source: round}, shaft: {value: 15 N/m, basis: assumed, source: round}}
 )";
 
@@ -290,6 +291,81 @@ TEST(ImportWay, LeadsToAPointThatWasMarkedInSlicer) {
   const CommandResult closed = to({{"entry", Vec3(30.0, 0.0, 4.0)}, {"target", goal}});
   EXPECT_EQ(closed.exit_code, 3);
   EXPECT_NE(closed.out.find("it meets 'skull' (bone)"), std::string::npos) << closed.out;
+}
+
+TEST(ImportWay, ABurrHoleOpensBoneOnTheWayAndNowhereElse) {
+  std::mt19937 random(23);
+  for (int number = 0; number < 4; ++number) {
+    SCOPED_TRACE(number);
+    const TempFolder folder;
+    Head head = randomHead(random);
+    head.half_angle = -1.0;  // closed all around
+    const Image image = imageOf(head);
+    ASSERT_EQ(planned(folder, image).exit_code, 3);
+    const CommandResult result =
+        runPalpate({"import", "head.nii.gz", "--names", "names.csv", "--materials", "table.yaml",
+                    "--to", "thalamus", "--burr-hole", "12", "-o", "head.yaml", "--json"},
+                   folder.path());
+    ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+    const Json way = parseOnly(result)["way"];
+    const Vec3 from = pointOf(way["from_m"]);
+    const Vec3 to = pointOf(way["to_m"]);
+    EXPECT_EQ(way["burr_hole"]["through"], "skull");
+    EXPECT_GE(way["clearance_m"].get<double>(), 2e-3);
+    EXPECT_LT(glm::length(to - head.target), 1.8);
+
+    // Bone within 6 mm of the way is a label of its own, all else is as it was. The ends of the
+    // way are rounded to tenths of a millimeter, so that voxels near the rim may be either.
+    const Image drilled = vdb::readImage(folder.path("head.labels.nii.gz"));
+    ASSERT_EQ(drilled.size, image.size);
+    const Vec3 along = glm::normalize(from - to);
+    std::size_t n = 0;
+    std::uint64_t opened = 0;
+    for (int k = 0; k < image.size[2]; ++k) {
+      for (int j = 0; j < image.size[1]; ++j) {
+        for (int i = 0; i < image.size[0]; ++i, ++n) {
+          const Vec3 d = 1e3 * image.toWorld(Vec3(i, j, k)) - to;
+          const double s = glm::dot(d, along);
+          const double off = glm::length(d - s * along);
+          const bool is_bone = static_cast<int>(image.values[n]) == kBoneLabel;
+          if (is_bone && s > 0.0 && std::abs(off - 6.0) < 0.2) {
+            opened += drilled.values[n] == image.values[n] ? 0U : 1U;
+          } else if (is_bone && s > 0.0 && off < 6.0) {
+            ++opened;
+            ASSERT_EQ(drilled.values[n], kFatLabel + 1);
+          } else {
+            ASSERT_EQ(drilled.values[n], image.values[n]);
+          }
+        }
+      }
+    }
+    EXPECT_EQ(way["burr_hole"]["voxels"].get<std::uint64_t>(), opened);
+    EXPECT_TRUE(walked(drilled, from, to));
+
+    // A needle goes through the hole to the target, and 9 mm beside it is stopped by the bone.
+    const std::vector<TracedTick> ticks = touched(folder, "head.yaml", {from, to}, "20mm/s");
+    EXPECT_EQ(ticks.back().region, "thalamus");
+    const Vec3 other = std::abs(along.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
+    const Vec3 aside = 9.0 * glm::normalize(glm::cross(along, other));
+    for (const TracedTick& tick :
+         touched(folder, "head.yaml", {from + aside, to + aside}, "20mm/s")) {
+      ASSERT_TRUE(tick.region == "outside" || tick.region == "fat") << tick.region;
+    }
+  }
+}
+
+TEST(ImportWay, ABurrHoleThatIsNotNeededOrNotOneIsRefused) {
+  const TempFolder folder;
+  (void)planned(folder, imageOf({}));
+  const auto asked = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"import",      "head.nii.gz", "--names",  "names.csv",
+                                          "--materials", "table.yaml",  "--dry-run"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return runPalpate(arguments, folder.path());
+  };
+  EXPECT_EQ(asked({"--burr-hole", "12"}).exit_code, 2) << "no target";
+  EXPECT_EQ(asked({"--to", "thalamus", "--burr-hole", "3"}).exit_code, 2);
+  EXPECT_EQ(asked({"--to", "thalamus", "--burr-hole", "wide"}).exit_code, 2);
 }
 
 TEST(ImportWay, AFileOfPointsThatIsNoTargetIsRefused) {

@@ -167,7 +167,8 @@ struct ImportOptions {
   std::string materials;  ///< table of tissues; empty: the project's
   /// Region, label or Markups file with a point to find a way to; empty: none.
   std::string to;
-  std::string way;  ///< Markups file to write the way to; empty: none
+  std::string way;        ///< Markups file to write the way to; empty: none
+  std::string burr_hole;  ///< diameter, in mm or with a unit; empty: no hole is drilled
   std::string voxel;
   ScanOptions reading;                ///< of all images
   std::vector<std::string> priority;  ///< where structures overlap, the first one gets the voxel

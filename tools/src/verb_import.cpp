@@ -3,9 +3,12 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <tuple>
 
+#include "import/burr_hole.h"
 #include "import/import_report.h"
 #include "import/imported_scene.h"
+#include "import/models.h"
 #include "import/needle_way.h"
 #include "input_kind.h"
 #include "output_files.h"
@@ -21,6 +24,10 @@ namespace palpate::tools {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// [m] A way keeps 2 mm from bone.
+constexpr double kNarrowestHole = 2.0 * kClearance;
+constexpr double kWidestHole = 0.06;
 
 void requireImage(const std::string& path, const std::string& what) {
   if (inputKind(path) == InputKind::kImage) return;
@@ -189,12 +196,19 @@ void refuseUnknown(const ImportOptions& options, const ImportedScan& scan) {
 
 ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, Console& console) {
   ImportedScan scan;
-  for (const std::string& file : options.scans) requireImage(file, "a label image");
-  const vdb::ImageOptions how = labelOptions(options);
-  scan.labels = readNoted(options.scan(), how, console);
-  const LabelNames table = {
-      options.names.empty() ? scan.labels.labels.names : vdb::readLabelTable(options.names).names,
-      vdb::readLabelCodes(options.scan(), how)};
+  LabelNames table;
+  if (areModels(options.scans)) {
+    scan.is_relabeled = true;
+    scan.labels = readModels(options, console);
+    table.names = scan.labels.labels.names;
+  } else {
+    for (const std::string& file : options.scans) requireImage(file, "a label image");
+    const vdb::ImageOptions how = labelOptions(options);
+    scan.labels = readNoted(options.scan(), how, console);
+    table = {
+        options.names.empty() ? scan.labels.labels.names : vdb::readLabelTable(options.names).names,
+        vdb::readLabelCodes(options.scan(), how)};
+  }
   scan.names = table.names;
   report(console.progress(), "labels", 0.0);
   scan.counts = vdb::countLabels(scan.labels);
@@ -261,13 +275,39 @@ std::string withoutExtension(const std::string& path) {
   return (fs::path(path).parent_path() / fs::path(path).stem()).string();
 }
 
+/// Makes the hole that was asked for, on the shortest way through bone: the target, to be reached
+/// from the same side.
+WayTarget drilled(const ImportOptions& options, const TissueTable& tissues, const WayTarget& target,
+                  ImportedScan& scan, Console& console) {
+  const double radius = 0.5 * parseLength(options.burr_hole, {}, "--burr-hole");
+  const NeedleWay through = needleWay(scan, tissues, target, true);
+  scan.burr_hole = drill(scan, tissues, through, target, radius);
+  scan.survey = vdb::surveyLabels(scan.labels, labelsOf(scan.plan),
+                                  scan.has_body ? &scan.body : nullptr, console.progress());
+  WayTarget again = wayTarget(scan, options.to);
+  again.place = through.to;
+  again.entry = through.entry;
+  return again;
+}
+
 void checkWay(const ImportOptions& options) {
-  if (options.way.empty()) return;
-  if (options.to.empty()) {
+  for (const auto& [given, name, does] :
+       {std::tuple{!options.way.empty(), "--way", "writes the way that --to finds"},
+        {!options.burr_hole.empty(), "--burr-hole", "opens bone on the way that --to finds"}}) {
+    if (!given || !options.to.empty()) continue;
     throw Error(ErrorKind::kUsage,
-                {"usage.import", "--way writes the way that --to finds", "give --to TARGET"});
+                {"usage.import", std::string(name) + " " + does, "give --to TARGET"});
   }
-  if (!isMarkupsName(options.way)) {
+  if (!options.burr_hole.empty()) {
+    const double width = parseLength(options.burr_hole, {}, "--burr-hole");
+    if (!(width >= kNarrowestHole && width <= kWidestHole)) {
+      throw Error(ErrorKind::kUsage, {"usage.import",
+                                      "--burr-hole is " + formatNumber(1e3 * width) +
+                                          " mm, permitted is from 4 to 60 mm",
+                                      "a common burr hole is 14 mm wide"});
+    }
+  }
+  if (!options.way.empty() && !isMarkupsName(options.way)) {
     throw Error(ErrorKind::kUsage,
                 {"usage.import", "the way " + options.way + " must end in .mrk.json", ""});
   }
@@ -277,6 +317,8 @@ void checkWay(const ImportOptions& options) {
 
 Report run(const ImportOptions& options, const GeneralOptions& general, Console& console) {
   const bool is_written = !options.dry_run;
+  const bool is_relabeled =
+      options.min_island || !options.burr_hole.empty() || areModels(options.scans);
   checkWay(options);
   OutputFiles files(general);
   const std::string changed_labels = withoutExtension(options.output) + ".labels.nii.gz";
@@ -289,7 +331,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
                                        options.materials, options.tissue_file};
     inputs.insert(inputs.end(), options.scans.begin(), options.scans.end());
     files.announce(options.output, inputs);
-    if (options.min_island) files.announce(changed_labels, inputs);
+    if (is_relabeled) files.announce(changed_labels, inputs);
     if (!options.way.empty()) {
       inputs.push_back(options.to);
       files.announce(options.way, inputs);
@@ -306,7 +348,9 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
   std::optional<NeedleWay> way;
   if (!options.to.empty()) {
     report(console.progress(), "way to " + options.to, -1.0);
-    way = needleWay(scan, tissues, options.to);
+    WayTarget target = wayTarget(scan, options.to);
+    if (!options.burr_hole.empty()) target = drilled(options, tissues, target, scan, console);
+    way = needleWay(scan, tissues, target);
     scan.way = suggestedWay(*way);
     if (way->clearance == 0.0) {
       console.note("the way to '" + way->target + "' passes within " +
@@ -315,19 +359,20 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
   }
   std::vector<std::string> written;
   if (is_written) {
-    const bool is_changed = options.min_island.has_value();
     const std::string output = options.output;
     std::vector<std::string> labels = {vdb::fileName(changed_labels)};
-    if (!is_changed) {
+    if (!is_relabeled) {
       labels.clear();
       for (const std::string& file : options.scans) labels.push_back(seenFrom(output, file));
     }
-    const SceneFiles seen = {labels, seenFrom(output, options.names),
+    // A table for models is of their files' numbers, not of the labels.
+    const std::string names = areModels(options.scans) ? "" : options.names;
+    const SceneFiles seen = {labels, seenFrom(output, names),
                              seenFrom(output, options.skin ? options.image : options.body),
                              seenFrom(output, options.image)};
     files.write(output, writeScene(options, scan, tissues, seen));
     written.push_back(output);
-    if (is_changed) {
+    if (is_relabeled) {
       report(console.progress(), "write labels", -1.0);
       files.write(changed_labels, vdb::encodeLabels(scan.labels, true));
       written.push_back(changed_labels);

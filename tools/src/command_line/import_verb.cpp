@@ -49,6 +49,9 @@ void defineImport(CLI::App& app, Invocation& invocation) {
       "the shortest straight way to a region or a label that ports let through, clear of bone, "
       "vessels and nerves: reported, and suggested in the scene; or to a point marked in Slicer "
       "(.mrk.json), from a second point if the file has one");
+  add(app, g, "--burr-hole", "DIAMETER", o.burr_hole,
+      "--to: drill a round hole through the bone on the shortest way, in mm or with a unit; the "
+      "changed image goes to FILE.labels.nii.gz");
   add(app, g, "--way", "FILE.mrk.json", o.way, "--to: write the way as a line that Slicer loads");
   g = "Materials and grids";
   addFlag(app, g, "--hounsfield", o.hounsfield,
@@ -74,6 +77,8 @@ Verb importVerb() {
       "palpate import labels.nii.gz --names labels.csv --body mask.nii.gz -o scan.yaml",
       "palpate import SCAN... -o SCENE.yaml [OPTIONS]",
       R"(SCAN is a label image, a folder of masks, or several masks: a structure each, called as its file.
+So are closed meshes, in mm (.stl .vtk .ply .obj), listed or in a folder: they become voxels, and
+the labels go to FILE.labels.nii.gz.
 Masks, and segments of DICOM, may overlap: the first that --priority names has the voxel, then the
 smallest. Each label becomes a region, with the tissue that the words of its name or its code mean;
 what fits none is listed. What stands between two regions their tissues' classes say: bone never opens,

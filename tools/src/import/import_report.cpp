@@ -276,6 +276,17 @@ class ImportReport {
                            {"clearance_m", way_->clearance},
                            {"peak_force_N", way_->peak},
                            {"parts", parts}};
+    if (scan_.burr_hole) {
+      const BurrHole& hole = *scan_.burr_hole;
+      report_.json["way"]["burr_hole"] = {{"diameter_m", 2.0 * hole.radius},
+                                          {"outer_m", vectorJson(hole.outer)},
+                                          {"inner_m", vectorJson(hole.inner)},
+                                          {"voxels", hole.voxels},
+                                          {"through", hole.through}};
+      report_.text += "Burr hole of " + formatNumber(2e3 * hole.radius) + " mm through " +
+                      hole.through + ", from " + placeText(hole.outer) + " to " +
+                      placeText(hole.inner) + "\n";
+    }
     report_.text += "To " + way_->target + ": " + formatNumber(way_->length() * 1e3, 4) +
                     " mm from " + placeText(way_->entry) + " to " + placeText(way_->to) +
                     ", at most " + formatNumber(way_->peak, 3) + " N (predicted)\n" +

@@ -94,6 +94,12 @@ class SceneWriter {
            std::to_string(*options_.min_island) + " voxels were changed; " + files_.labels.front() +
            " is what came of it.");
     }
+    if (scan_.burr_hole) {
+      const BurrHole& hole = *scan_.burr_hole;
+      line("# A burr hole of " + millimeters(2.0 * hole.radius) + " mm was asked for, from " +
+           point(hole.outer) + " to " + point(hole.inner) + " through " + hole.through + "; " +
+           files_.labels.front() + " has it.");
+    }
     line("palpate: 1");
     line("length: mm");
     // Deep in bone, a wall asks for far more force than any device has, and than a hand should get.
@@ -125,7 +131,7 @@ class SceneWriter {
       }
       labels += "]";
     }
-    if (!options_.priority.empty() && !options_.min_island) {
+    if (!options_.priority.empty() && !scan_.isChanged(options_)) {
       labels += ", priority: [";
       for (std::size_t n = 0; n < options_.priority.size(); ++n) {
         labels += (n > 0 ? ", " : "") + sceneWord(options_.priority[n]);
@@ -134,7 +140,7 @@ class SceneWriter {
     }
     line("  labels: {file: " + labels +
          (files_.names.empty() ? "" : ", names: " + sceneWord(files_.names)) +
-         (options_.min_island ? "" : reading()) + "}");
+         (scan_.isChanged(options_) ? "" : reading()) + "}");
     if (!files_.body.empty()) line("  body: {file: " + sceneWord(files_.body) + reading() + "}");
     if (options_.hounsfield && !options_.skin) {
       line("  ct: {file: " + sceneWord(files_.image) + reading() + "}");

@@ -29,6 +29,15 @@ struct SuggestedWay {
   Vec3 to{0.0};      ///< [m]
 };
 
+/// A hole that the user wanted drilled through bone.
+struct BurrHole {
+  Vec3 outer{0.0}, inner{0.0};  ///< [m] ends of its axis
+  double radius = 0.0;          ///< [m]
+  int label = 0;                ///< of its voxels
+  std::uint64_t voxels = 0;
+  std::string through;  ///< names of the regions, with commas
+};
+
 /// Everything that the scene is written from.
 struct ImportedScan {
   vdb::Image labels;
@@ -38,14 +47,20 @@ struct ImportedScan {
   std::vector<OpenAir> open_air;
   vdb::LabelSurvey survey;  ///< for the plan's regions
   bool has_body = false;
-  vdb::VoxelMask body;              ///< the voxels of the body; empty without one
-  std::optional<SuggestedWay> way;  ///< not given: the best of six ways is chosen
-  std::vector<int> body_labels;     ///< the labels of its mask, if the body comes from a mask
-  std::uint64_t image_voxels = 0;   ///< of all images that the scene reads
-  std::uint64_t ct_voxels = 0;      ///< of the image that stiffness comes from; 0: none
-  double voxel = 0.0;               ///< [m] of the grids
+  vdb::VoxelMask body;                     ///< the voxels of the body; empty without one
+  std::optional<SuggestedWay> way;         ///< not given: the best of six ways is chosen
+  std::vector<int> body_labels;            ///< the labels of its mask, if it comes from a mask
+  std::uint64_t image_voxels = 0;          ///< of all images that the scene reads
+  std::uint64_t ct_voxels = 0;             ///< of the image that stiffness comes from; 0: none
+  double voxel = 0.0;                      ///< [m] of the grids
   std::vector<vdb::IslandChange> changes;  ///< changes made to the labels
+  std::optional<BurrHole> burr_hole;
+  bool is_relabeled = false;  ///< the labels were made of models
 
+  /// The labels are not those of the file any more: they are written to one of their own.
+  [[nodiscard]] bool isChanged(const ImportOptions& options) const {
+    return options.min_island.has_value() || burr_hole.has_value() || is_relabeled;
+  }
   [[nodiscard]] std::string nameOf(std::size_t region) const;
   /// The neighbors of a region, with their shares of the region's surface, the largest first; parts
   /// cut by the image's border have no known neighbor.

@@ -80,12 +80,14 @@ class Borders {
 
 class NeedleWayFinder {
  public:
-  NeedleWayFinder(const ImportedScan& scan, const TissueTable& tissues, const std::string& target)
+  NeedleWayFinder(const ImportedScan& scan, const TissueTable& tissues, WayTarget target,
+                  bool through_bone)
       : scan_(scan),
         tissues_(tissues),
         borders_(scan, tissues),
-        target_(wayTarget(scan, target)),
-        sampler_(scan) {
+        target_(std::move(target)),
+        sampler_(scan),
+        through_bone_(through_bone) {
     const Mat3& axes = scan.labels.axes;
     step_ = 0.5 * std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
   }
@@ -161,7 +163,7 @@ class NeedleWayFinder {
       if (here.region != outside && isForbidden(here.region)) return closedBy(here.region);
       if (found.empty() || found.back().region != here.region) {
         // The needle will go the opposite way: from outside to the target.
-        if (!found.empty() && !borders_.force(here.region, found.back().region)) {
+        if (!found.empty() && !isOpen(here.region, found.back().region)) {
           return closedBy(here.region == outside ? found.back().region : here.region);
         }
         // The image's border is a closed wall.
@@ -188,10 +190,20 @@ class NeedleWayFinder {
     return scan_.plan.regions[region].tissue;
   }
 
+  [[nodiscard]] bool isRigid(std::size_t region) const {
+    const Tissue* tissue = tissueOf(region);
+    return tissue != nullptr && tissue->kind == TissueClass::kRigid;
+  }
+
+  [[nodiscard]] bool isOpen(std::size_t from, std::size_t to) const {
+    if (through_bone_ && (isRigid(from) || isRigid(to))) return true;
+    return borders_.force(from, to).has_value();
+  }
+
   [[nodiscard]] bool isForbidden(std::size_t region) const {
     if (region == target_.region) return false;
     const Tissue* tissue = tissueOf(region);
-    return tissue != nullptr && (tissue->kind == TissueClass::kRigid || tissue->is_spared);
+    return tissue != nullptr && ((isRigid(region) && !through_bone_) || tissue->is_spared);
   }
 
   /// Whether everything around the way, at the distance `clearance`, may be touched.
@@ -267,6 +279,7 @@ class NeedleWayFinder {
   Borders borders_;
   WayTarget target_;
   RegionSampler sampler_;
+  bool through_bone_ = false;
   double step_ = 1e-3;
   /// Number of directions, by the region that closes them first
   std::map<std::size_t, int> closed_;
@@ -280,9 +293,9 @@ double NeedleWay::length() const {
   return sum;
 }
 
-NeedleWay needleWay(const ImportedScan& scan, const TissueTable& tissues,
-                    const std::string& target) {
-  return NeedleWayFinder(scan, tissues, target).find();
+NeedleWay needleWay(const ImportedScan& scan, const TissueTable& tissues, const WayTarget& target,
+                    bool through_bone) {
+  return NeedleWayFinder(scan, tissues, target, through_bone).find();
 }
 
 SuggestedWay suggestedWay(const NeedleWay& way) {

@@ -7,6 +7,7 @@
 
 #include "import/imported_scene.h"
 #include "import/suggested_way.h"
+#include "import/way_target.h"
 
 namespace palpate::tools {
 
@@ -41,11 +42,11 @@ inline constexpr double kClearance = 2e-3;
 
 /// The shortest of all straight ways from outside to the target that cross walls only through
 /// ports, and touch neither rigid tissue nor tissue that the table wants spared. A way that keeps
-/// kClearance is preferred to one that does not. `target`: as wayTarget() takes it; one that has an
-/// entry leaves a single way.
-/// @throws Error (kInput): no such target; every way is closed, with the regions that close them.
+/// kClearance is preferred to one that does not. A target that has an entry leaves a single way.
+/// `through_bone`: rigid tissue does not stop the needle.
+/// @throws Error (kInput): every way is closed, with the regions that close them.
 [[nodiscard]] NeedleWay needleWay(const ImportedScan& scan, const TissueTable& tissues,
-                                  const std::string& target);
+                                  const WayTarget& target, bool through_bone = false);
 
 /// For the scene's header.
 [[nodiscard]] SuggestedWay suggestedWay(const NeedleWay& way);

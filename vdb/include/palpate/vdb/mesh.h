@@ -124,4 +124,21 @@ struct SharpField {
 [[nodiscard]] PALPATE_EXPORT SharpField withSharpEdges(FieldPtr baked, const Mesh& mesh,
                                                        double angle, double voxel);
 
+struct NamedMesh {
+  std::string name;
+  Mesh mesh;
+};
+
+/// Closed meshes, a structure each, as a label image with axes along R, A, S and cubic voxels of
+/// `voxel` [m], two of them free on every side. A voxel is of a mesh if its center is inside (the
+/// winding number is not 0), so that surfaces are met within half a voxel's diagonal. Labels run
+/// from 1 in the meshes' order. Where meshes overlap, the one that `priority` names first has the
+/// voxel; else the one of fewer voxels.
+/// @throws Error: kInput, codes "models.*": an open mesh, two of one name, an image of more than
+/// 2^31 voxels; labels.priority; kCancelled.
+[[nodiscard]] PALPATE_EXPORT Image labelsOfMeshes(const std::vector<NamedMesh>& meshes,
+                                                  double voxel,
+                                                  const std::vector<std::string>& priority,
+                                                  const Progress& progress = {});
+
 }  // namespace palpate::vdb

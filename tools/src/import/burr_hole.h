@@ -1,0 +1,20 @@
+#pragma once
+/// A hole that is drilled through the bone of an imported scan, along a way that a needle is to
+/// take.
+
+#include <cstdint>
+#include <string>
+
+#include "import/imported_scene.h"
+#include "import/needle_way.h"
+
+namespace palpate::tools {
+
+/// Voxels of rigid tissue whose centers are within `radius` [m] of the line from the way's entry to
+/// its target, short of the target, become a region of their own of the table's fluid. The target's
+/// region stays as it is. The scan's survey is not of its plan any more.
+/// @throws Error (kInput): the way meets no bone; the table has no fluid; no label is free.
+[[nodiscard]] BurrHole drill(ImportedScan& scan, const TissueTable& tissues, const NeedleWay& way,
+                             const WayTarget& target, double radius);
+
+}  // namespace palpate::tools
