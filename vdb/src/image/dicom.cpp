@@ -10,6 +10,7 @@
 #include "image/image_parts.h"
 #include "image/readers.h"
 #include "palpate/core/error.h"
+#include "palpate/core/text.h"
 #include "palpate/vdb/text.h"
 
 namespace palpate::vdb {
