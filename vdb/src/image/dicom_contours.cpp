@@ -183,7 +183,7 @@ std::optional<ContourGrid> gridOfSeries(StructureSet& set) {
   std::filesystem::path folder = std::filesystem::path(set.path).parent_path();
   if (folder.empty()) folder = ".";
   try {
-    const DicomSeries series = findDicomSeries(folder.string(), set.series);
+    const DicomSeries series = findDicomSeries(folder.string(), set.series, false);
     set.notes.insert(set.notes.end(), series.notes.begin(), series.notes.end());
     return ContourGrid{series.size, series.place};
   } catch (const Error& error) {
