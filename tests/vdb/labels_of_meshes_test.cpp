@@ -14,8 +14,6 @@
 namespace palpate::vdb {
 namespace {
 
-using palpate::testing::errorOf;
-
 /// Corners at whole numbers times `unit`, so that rows of voxels meet edges and corners exactly.
 Mesh boxMesh(const Vec3& lo, const Vec3& hi, bool is_turned = false) {
   Mesh mesh;
