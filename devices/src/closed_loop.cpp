@@ -22,7 +22,7 @@ void check(const LoopModel& loop) {
   }
   if (loop.delay < 0 || loop.delay > kMostDelay) {
     throw Error(ErrorKind::kUsage,
-                {"loop.delay", "the delay of a loop is 0 to " + std::to_string(kMostDelay) +
+                {"loop.delay", "the delay of a loop must be 0 to " + std::to_string(kMostDelay) +
                                    " samples, not " + std::to_string(loop.delay)});
   }
 }

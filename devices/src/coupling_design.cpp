@@ -18,7 +18,7 @@ void checkLoop(const LoopModel& loop) {
   if (loop.device.damping > 0.0) return;
   throw Error(ErrorKind::kUsage,
               {"coupling.device",
-               "no coupling is stable with a device without damping: it takes no energy"});
+               "no coupling is stable with this device: it has no damping, so it takes no energy"});
 }
 
 /// [s/kg] The margin between the coupling and what the device can hold, at the worst frequency;

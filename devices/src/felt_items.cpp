@@ -66,7 +66,7 @@ class Items {
     const bool is_curved = wall.curve.exponent != 1.0 || mostOf(wall.curve.stiffening) > 0.0;
     if (is_curved) {
       item.parameter = "curve";
-      item.note = "the slope where it pushes as hard as the device can";
+      item.note = "the slope of the force where it reaches the device's greatest force";
     }
     if (wall.composite.radius > 0.0) {
       item.most.stiffness = std::max(item.most.stiffness, stiffestWall(force));

@@ -27,7 +27,7 @@ HangWatch::HangWatch(Device& device, std::int64_t longest, int above)
     throw Error(
         ErrorKind::kOperation,
         {"servo.watch",
-         std::string("the thread that watches the servo loop cannot be started: ") + error.what(),
+         std::string("the watchdog thread of the servo loop cannot be started: ") + error.what(),
          "close other programs, or raise the limit on processes (ulimit -u)"});
   }
 }

@@ -49,8 +49,8 @@ void check(const PassivitySettings& s) {
   at_least("hand_force", "the hand's largest force [N]", *s.hand_force);
   if (s.delay > 0) {
     throw usageError("hand_force",
-                     "with a delay of the force no bound on its energy holds: leave out the "
-                     "hand's force, or have a device without delay");
+                     "the hand's force can bound the energy only without a delay: leave it out, "
+                     "or set the delay to 0");
   }
 }
 

@@ -192,8 +192,8 @@ RecordedPath readPath(const std::string& file, PathRules rules) {
           "path.time",
           "t = '" + std::string(line.substr(0, line.find(','))) +
               "' does not come after the row before it",
-          "rows must be in order of time, and no two at one time, unless the path is taken "
-          "as recorded",
+          "times must rise from row to row; to feel a record with its faults, take it as "
+          "recorded (on the command line --as-recorded)",
           line, 0);
     }
     path.push_back({row[0], {row[1], row[2], row[3]}});

@@ -56,9 +56,10 @@ PathFormula sampled(double duration, double rate, const Vec3& end,
   // Rounding must not add a tick to a duration that is a whole number of ticks.
   const double last = std::max(1.0, std::ceil(exact * (1.0 - 1e-12)));
   if (!(last < kMostRows)) {
-    throw inputError("path.parameter",
-                     "the path would take " + std::to_string(last) + " rows, more than 10^8",
-                     "lower the rate, or raise the speed");
+    throw inputError(
+        "path.parameter",
+        "the path would have " + std::to_string(last) + " rows; at most 10^8 are possible",
+        "lower the rate, or raise the speed");
   }
   return {static_cast<std::size_t>(last), rate, end, std::move(position)};
 }

@@ -33,9 +33,10 @@ class Recorder::Work {
     try {
       thread_ = std::thread([this] { run(); });
     } catch (const std::system_error& error) {
-      throw Error(ErrorKind::kOperation,
-                  {"record.thread", std::string("no thread for the record: ") + error.what(),
-                   "look at the limit of processes: ulimit -u"});
+      throw Error(
+          ErrorKind::kOperation,
+          {"record.thread", std::string("the recorder's thread cannot be started: ") + error.what(),
+           "close other programs, or raise the limit on processes (ulimit -u)"});
     }
   }
 

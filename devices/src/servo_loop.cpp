@@ -21,7 +21,7 @@ void checkServo(const ServoSettings& settings, bool has_rate) {
   }
   if (settings.elevate > Elevate::kRequire) {
     throw Error(ErrorKind::kUsage,
-                {"servo.elevate", "the servo loop cannot be elevated by " +
+                {"servo.elevate", "unknown way of elevating the servo loop: number " +
                                       std::to_string(static_cast<int>(settings.elevate))});
   }
   constexpr double kLongest = 1e6;  // [s] far beyond use, well within a clock's nanoseconds
@@ -110,7 +110,7 @@ void noteElevation(const Elevation& elevation, Elevate wanted, ServoReport& repo
                std::string("the system refuses ") +
                    (lacks_priority ? "a real-time priority: " : "locked memory: ") +
                    std::generic_category().message(error),
-               "devices/README.md says how to allow it; or run without requiring it"});
+               "devices/README.md says how to allow it; or run with Elevate::kPrefer"});
 }
 
 }  // namespace

@@ -41,16 +41,16 @@ void check(const Scene& scene, const SessionSettings& settings) {
   checkLimit(limits.ramp, limits.ramp >= 0.0 && std::isfinite(limits.ramp), "the ramp");
   checkLimit(limits.period, limits.period > 0.0 && std::isfinite(limits.period), "the period");
   if (settings.clutch_button < 0 || settings.clutch_button > 31) {
-    throw Error(ErrorKind::kUsage, {"session.button", "a clutch button is 0 to 31, not " +
+    throw Error(ErrorKind::kUsage, {"session.button", "a clutch button must be 0 to 31, not " +
                                                           std::to_string(settings.clutch_button)});
   }
   double last = -kInfinity;
   for (const ContentEvent& event : settings.changes) {
     if (!(event.time >= last)) {
-      throw Error(
-          ErrorKind::kUsage,
-          {"session.changes", "changes of contents must go by time: " + std::to_string(event.time) +
-                                  " s comes after " + std::to_string(last) + " s"});
+      throw Error(ErrorKind::kUsage,
+                  {"session.changes",
+                   "changes of contents must be in order of time: " + std::to_string(event.time) +
+                       " s comes after " + std::to_string(last) + " s"});
     }
     last = event.time;
   }

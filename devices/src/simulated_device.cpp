@@ -26,11 +26,12 @@ void check(const SimulationSettings& settings, const HandPath& path) {
   check(settings.device);
   if (settings.hand) check(*settings.hand);
   if (!(settings.rate >= 1.0 && settings.rate <= 1e5)) {
-    throw usageError("device.rate", "a simulated device gives 1 to 1e5 readings a second, not " +
-                                        std::to_string(settings.rate));
+    throw usageError("device.rate",
+                     "the rate of a simulated device must be 1 to 1e5 readings a second, not " +
+                         std::to_string(settings.rate));
   }
   if (settings.delay < 0 || settings.delay > SimulatedDevice::kMostDelay) {
-    throw usageError("device.delay", "the delay of a simulated device is 0 to " +
+    throw usageError("device.delay", "the delay of a simulated device must be 0 to " +
                                          std::to_string(SimulatedDevice::kMostDelay) +
                                          " samples, not " + std::to_string(settings.delay));
   }

@@ -87,8 +87,8 @@ StateReader::StateReader(std::string file, std::string_view about) : file_(std::
   const std::uint64_t bytes = is_file ? std::filesystem::file_size(file_, failed) : 0;
   if (is_file) in_.open(file_, std::ios::binary);
   if (!is_file || failed || !in_) {
-    throw inputError("record.unreadable", "there is no such file, or it cannot be opened",
-                     "without it a replay begins at the first tick", file_);
+    throw inputError("record.unreadable", "the file of states is missing or cannot be opened",
+                     "without it a replay can only begin at the first tick", file_);
   }
   const Header ours = headerAbout(about);
   Header header;

@@ -133,8 +133,9 @@ TEST_F(BakeParts, AGridOfTheWholeTellsWhatItLoses) {
     SCOPED_TRACE(grid["name"].get<std::string>());
     EXPECT_FALSE(grid["error"]["holds_shape"].get<bool>());
     EXPECT_GT(grid["error"]["turn_degrees"], 10.0);
-    EXPECT_NE(result.err.find(grid["name"].get<std::string>() + " does not hold all"),
-              std::string::npos)
+    EXPECT_NE(
+        result.err.find(grid["name"].get<std::string>() + " cannot hold the shape everywhere"),
+        std::string::npos)
         << result.err;
   }
   EXPECT_NE(result.err.find("--parts"), std::string::npos) << result.err;

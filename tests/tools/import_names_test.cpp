@@ -237,7 +237,7 @@ TEST(ImportNames, CodesOfSlicerDecideBeforeWords) {
   ASSERT_EQ(json["unmatched"].size(), 1U);
   EXPECT_EQ(json["unmatched"][0]["name"], "soft thing");
   // The report notes a name that disagrees with its code.
-  EXPECT_NE(result.err.find("the code counts"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("the code decides"), std::string::npos) << result.err;
 }
 
 /// Names of a table: `index name` or `value,name`; label 0 left out.

@@ -369,7 +369,7 @@ TEST(Import, LabelsWithoutNamesAreToldToHaveOneTissue) {
   const TempFolder folder;
   writeLeg(folder);
   const CommandResult bare = runPalpate({"import", "leg.nii.gz", "--dry-run"}, folder.path());
-  EXPECT_NE(bare.err.find("taken for soft_tissue; --names gives them names"), std::string::npos)
+  EXPECT_NE(bare.err.find("taken for soft_tissue; give names (--names FILE)"), std::string::npos)
       << bare.err;
   const CommandResult named =
       runPalpate({"import", "leg.nii.gz", "--names", "names.csv", "--dry-run"}, folder.path());

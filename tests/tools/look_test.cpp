@@ -202,15 +202,15 @@ layers:
   - {name: here, inside: {sphere: {center: [300, 0, 0], radius: 5}}}
 )");
   json = jsonOf({"explain", moved});
-  EXPECT_EQ(json["regions"][1]["left_out"], "beyond the device's workspace");
+  EXPECT_EQ(json["regions"][1]["left_out"], "it lies outside the device's workspace");
   EXPECT_EQ(json["sources"][0]["made"], false);
-  EXPECT_EQ(json["sources"][0]["why_not"], "beyond the device's workspace");
+  EXPECT_EQ(json["sources"][0]["why_not"], "it lies outside the device's workspace");
   EXPECT_TRUE(json["saved_estimate"].is_null()) << "no grid was made that tells what one costs";
   const std::string text = runPalpate({"explain", moved}).out;
   EXPECT_NE(text.find("The device reaches from (280, -20, -20) to (320, 20, 20)"),
             std::string::npos)
       << text;
-  EXPECT_NE(text.find("no: beyond the device's workspace"), std::string::npos) << text;
+  EXPECT_NE(text.find("no: it lies outside the device's workspace"), std::string::npos) << text;
 }
 
 TEST(Explain, MeasuresWhatTheWorkspaceSaves) {

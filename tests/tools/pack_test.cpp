@@ -242,7 +242,8 @@ layers: [{name: stone, inside: {mesh: {file: stone.obj, voxel: 0.5}}, wall: hard
       }
       const CommandResult result = touched("hurt");
       EXPECT_EQ(result.exit_code, 3) << name << result.err;
-      EXPECT_NE(result.err.find(is_gone ? "is gone" : "not as it was packed"), std::string::npos)
+      EXPECT_NE(result.err.find(is_gone ? "is gone" : "has changed since it was packed"),
+                std::string::npos)
           << name << result.err;
       ++tried;
     }

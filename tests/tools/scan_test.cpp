@@ -218,7 +218,7 @@ TEST(Scan, MeshesSayTheirSpaceOrAreTold) {
   EXPECT_NEAR(infoOf({plain, "--space", "LPS"})["bounds_m"]["lo"][1], -0.002, 1e-12);
   EXPECT_NEAR(infoOf({slicer})["bounds_m"]["lo"][1], -0.002, 1e-12);
   EXPECT_EQ(infoOf({slicer})["space_stated"], true);
-  EXPECT_NE(runPalpate({"info", plain}).err.find("--space says otherwise"), std::string::npos);
+  EXPECT_NE(runPalpate({"info", plain}).err.find("--space changes that"), std::string::npos);
   EXPECT_NE(runPalpate({"info", slicer}).out.find("LPS, as the file says"), std::string::npos);
   EXPECT_EQ(runPalpate({"info", plain, "--frame", "1"}).exit_code, 2);
   EXPECT_EQ(runPalpate({"info", plain, "--space", "up"}).exit_code, 2);

@@ -96,16 +96,16 @@ TEST_F(RenderView, TurnsAndReplaysAsAnimations) {
 
 TEST_F(RenderView, RefusesWhatDoesNotGoTogether) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> all = {
-      {{"-o", "p.webp", "--turn", "5"}, "of a picture in space"},
-      {{"-o", "p.png", "--opacity", "liquid=0.5"}, "of a picture in space"},
-      {{"-o", "p.png", "--slice", "x=0"}, "of a picture in space"},
-      {{"-o", "p.png", "--around", "0,0,0,10"}, "of a picture in space"},
+      {{"-o", "p.webp", "--turn", "5"}, "apply to pictures in space"},
+      {{"-o", "p.png", "--opacity", "liquid=0.5"}, "apply to pictures in space"},
+      {{"-o", "p.png", "--slice", "x=0"}, "apply to pictures in space"},
+      {{"-o", "p.png", "--around", "0,0,0,10"}, "apply to pictures in space"},
       {{"-o", "p.gif", "--view", "corner", "--turn", "5"}, "must end in .png or .webp"},
       {{"-o", "p.png", "--view", "corner", "--forces", "8"}, "where the scene is cut"},
       {{"-o", "p.png", "--view", "corner", "--iso", "5"}, "where the scene is cut"},
       {{"-o", "p.png", "--iso", "-1"}, "is not above 0"},
-      {{"-o", "p.png", "--iso", "0.001"}, "run into one another"},
-      {{"-o", "p.png", "--view", "+x", "--slice", "x=1", "--iso", "1um"}, "run into one another"},
+      {{"-o", "p.png", "--iso", "0.001"}, "would merge"},
+      {{"-o", "p.png", "--view", "+x", "--slice", "x=1", "--iso", "1um"}, "would merge"},
       {{"-o", "p.png", "--view", "+x", "--slice", "w=1"}, "--slice: 'w=1' is not x=VALUE"},
       {{"-o", "p.png", "--view", "+x", "--around", "0,0,0"}, "is not four numbers"},
       {{"-o", "p.png", "--view", "+x", "--around", "0,0,0,-1"}, "nothing can be seen"},

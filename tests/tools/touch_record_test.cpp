@@ -126,7 +126,7 @@ TEST_F(TouchRecord, NumPyFindsWhatTheTraceSaysAndItIsFeltAnew) {
   (void)folder_.file("ball.yaml", harder);
   const CommandResult changed = palpate({"replay", "r.npy"});
   EXPECT_EQ(changed.exit_code, 1);
-  EXPECT_NE(changed.err.find("is not what it was"), std::string::npos) << changed.err;
+  EXPECT_NE(changed.err.find("has changed since it was felt"), std::string::npos) << changed.err;
 }
 
 TEST_F(TouchRecord, StatesAreOnlyForTheSceneThatWasFelt) {
@@ -157,7 +157,7 @@ TEST_F(TouchRecord, StatesAreOnlyForTheSceneThatWasFelt) {
   const CommandResult anew = palpate({"replay", "r.npy", "--from", "300", "--json"});
   EXPECT_EQ(anew.exit_code, 0) << anew.err << anew.out;
   EXPECT_EQ(parseOnly(anew)["begun_at_tick"], 0);
-  EXPECT_NE(anew.err.find("is not what it was"), std::string::npos) << anew.err;
+  EXPECT_NE(anew.err.find("has changed since it was felt"), std::string::npos) << anew.err;
   EXPECT_NE(anew.err.find("begins at the first tick"), std::string::npos) << anew.err;
 }
 

@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{"touch", "c.yaml", "--press", "0,0,0", "--trace", "a", "--image", "a"}, ".png"},
         Wrong{{"touch", "c.yaml", "--press", "0,0,0", "--trace", "c.yaml"},
               "would replace the input"},
-        Wrong{{"touch", "c.yaml", "d.yaml", "--press", "0,0,0"}, "one argument too many"},
+        Wrong{{"touch", "c.yaml", "d.yaml", "--press", "0,0,0"}, "unexpected argument 'd.yaml'"},
         Wrong{{"touch", "c.yaml", "--insert", "0,0,60", "0,0"}, "'0,0' is not a point"},
         Wrong{{"bake", "c.yaml"}, "-o OUT.vdb is missing"},
         Wrong{{"bake", "c.yaml", "-o", "a.nii"}, "must end in .vdb"},
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{{"render", "c.yaml", "-o", "a.png", "--plane", "w=3"}, "--plane"},
         Wrong{{"render", "c.yaml", "-o", "a.png", "--cut", "1,2,3"}, "--cut"},
         Wrong{{"render", "c.yaml", "-o", "a.png", "--size", "10x10"}, "--size"},
-        Wrong{{"--fast", "info", "c.yaml"}, "not a general option"}));
+        Wrong{{"--fast", "info", "c.yaml"}, "'--fast' cannot stand before the verb"}));
 
 TEST(Usage, GeneralOptionsMayStandBeforeTheVerb) {
   const TempFolder folder;

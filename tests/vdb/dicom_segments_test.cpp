@@ -124,7 +124,7 @@ TEST(DicomSegmentation, BesideItsSeriesIsReadByItsOwnName) {
   const Image slices = readImage(series);
   EXPECT_EQ(slices.size[2], 4);
   EXPECT_TRUE(std::any_of(slices.notes.begin(), slices.notes.end(), [](const std::string& note) {
-    return note.find("1 DICOM segmentations are passed over") != std::string::npos;
+    return note.find("1 DICOM segmentations were ignored") != std::string::npos;
   }));
   EXPECT_EQ(readImage(series + "/a_seg.dcm").labels.names.size(), 3U);
   // A folder may stand for the only file in it; if there are two, one has to be named.

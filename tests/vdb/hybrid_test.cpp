@@ -355,7 +355,7 @@ TEST(Hybrid, GridsMadeOnceTakeTheirPlacesAgain) {
     }
   };
   expect_other(tree(30.3 * kMm), grids, "is off its part");
-  expect_other(turnedBox(), grids, "the field lacks");
+  expect_other(turnedBox(), grids, "the field does not have");
 }
 
 TEST(Hybrid, WhatAGridCannotHoldStaysAnalyticAndSaysWhy) {

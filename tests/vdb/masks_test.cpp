@@ -168,8 +168,8 @@ TEST(Masks, OnAnotherGridAreRefusedWithTheShift) {
   shifted.sform[0][3] += 3.0;
   shifted.sform[2][3] -= 2.0;
   EXPECT_EQ(message_of(shifted),
-            "it is shifted by (3, 0, -2) mm (right, front, up), which is (1.5, 0, -1) voxels, "
-            "against a.nii");
+            "it is shifted by (3, 0, -2) mm (right, front, up), or (1.5, 0, -1) voxels, "
+            "from a.nii");
   NiftiFile cropped = shifted;
   cropped.dim = {5, 5, 4};
   cropped.values.assign(100, 0.0);

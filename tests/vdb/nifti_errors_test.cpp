@@ -162,7 +162,7 @@ TEST(NiftiErrors, GzipFileCutAnywhere) {
   // All voxels are there, but the checksum behind them is not.
   for (const long missing : {1L, 4L, 8L}) {
     expectRefused(writeTemporary("tail.nii.gz", Bytes(whole.begin(), whole.end() - missing)),
-                  "nifti.truncated", "break off");
+                  "nifti.truncated", "data are cut short");
   }
 }
 

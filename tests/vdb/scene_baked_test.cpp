@@ -107,7 +107,7 @@ TEST_F(SceneBaked, APortIsOnWhatStayedAnalyticOrOnTheWhole) {
   };
   EXPECT_NO_THROW((void)compile(read(port("block"))));
   EXPECT_NO_THROW((void)compile(read(port("foam"))));
-  expectError(port("wave"), "scene.port_face", 8, 16, "'wave' went into the baked in line 4");
+  expectError(port("wave"), "scene.port_face", 8, 16, "'wave' is part of the baked in line 4");
 }
 
 TEST_F(SceneBaked, ErrorsPointAtWhatIsWrong) {

@@ -181,7 +181,7 @@ TEST_F(SceneMaps, WhatCannotBeIsRefusedAtItsPlaceWithARemedy) {
            Row{"{grid: {file: bools.vdb}}", "vdb.type", "BoolGrid", "FloatGrid", 35},
            Row{"{grid: {file: nan.vdb}}", "vdb.not_finite", "not numbers", "damaged", 35},
            Row{"{grid: {file: empty.vdb}}", "vdb.empty", "no active voxels", "", 35},
-           Row{"{grid: {file: negative.vdb}}", "scene.range", "-5", "mend", 21},
+           Row{"{grid: {file: negative.vdb}}", "scene.range", "-5", "correct", 21},
            Row{"{grid: {file: nowhere.vdb}}", "scene.no_file", "nowhere.vdb", "folder", 35},
            Row{"{grid: {file: ramp.vdb, name: hide/stiffness}}", "vdb.no_grid", "hide/stiffness",
                "skin/stiffness", 35},

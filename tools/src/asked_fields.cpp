@@ -19,7 +19,7 @@ std::vector<AskedField> chooseFields(const Scene& scene, const std::string& name
     if (a.name == name) return {a};
   }
   throw inputError(code, "there is no field or layer '" + name + "'",
-                   suggestionFor(name, all, "palpate info names them", &AskedField::name));
+                   suggestionFor(name, all, "palpate info lists them", &AskedField::name));
 }
 
 const char* metricName(Metric metric) {

@@ -120,7 +120,7 @@ std::vector<BakedGrid> bakeScene(const BakeOptions& options, Console& console,
 
 std::string onlyLayerName(const BakeOptions& options) {
   if (options.layers.size() > 1)
-    throw bakeUsageError("one surface has one name; --layer was given twice");
+    throw bakeUsageError("--layer was given twice; one surface has one name");
   return options.layers.empty() ? stemOf(options.input) : options.layers.front();
 }
 
@@ -167,7 +167,7 @@ std::vector<int> labelsIn(const std::string& entry, const vdb::NameTable& names,
     if (label != 0 && label >= range->first && label <= range->second) values.push_back(label);
   }
   if (values.empty()) {
-    throw inputError("labels.no_voxels", "no voxel of the image is of labels " + entry,
+    throw inputError("labels.no_voxels", "no voxel of the image has any of the labels " + entry,
                      "palpate info lists the labels", source);
   }
   return values;
@@ -210,14 +210,16 @@ void tellLoss(const BakeOptions& options, const vdb::LevelSet& grid, Console& co
 void checkDistances(const BakeOptions& options, const vdb::Image& image, Console& console) {
   const std::optional<double> slope = vdb::slopeAtZero(image);
   if (!slope) {
-    throw inputError("image.distances", "the values do not change their sign between any voxels",
-                     "signed distances are negative inside; --above VALUE takes what is brighter",
-                     options.input);
+    throw inputError(
+        "image.distances",
+        "the values nowhere change from negative to positive, so there is no surface at 0",
+        "signed distances are negative inside; for gray values give --above VALUE", options.input);
   }
   if (!vdb::looksLikeDistances(image)) {
-    console.note(options.input + ": where its values are 0 they change by " +
+    console.note(options.input + ": at its surface the values change by " +
                  formatNumber(*slope * 1e-3, 3) +
-                 " a mm, so they are not distances in mm; only where they are 0 counts");
+                 " per mm instead of 1, so they are not distances in mm; only the place where they "
+                 "are 0 is used");
   }
 }
 
@@ -330,7 +332,7 @@ std::vector<BakedGrid> bakeInput(const BakeOptions& options, Console& console,
     const vdb::LevelSetInfo& info = one.grid.info();
     const auto lost = info.metadata.find("lost_parts");
     if (lost != info.metadata.end()) {
-      console.note(info.name + " has lost what its voxels cannot hold: " + lost->second);
+      console.note(info.name + " lacks parts that its voxels cannot hold: " + lost->second);
     }
   }
   return grids;

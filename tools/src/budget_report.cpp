@@ -68,7 +68,7 @@ std::string cures(const BudgetItem& each) {
   std::string hands;
   for (const std::string& hand : each.hands) hands += (hands.empty() ? "" : " or ") + hand;
   add(!hands.empty(), "a hand that is " + hands);
-  return text.empty() ? "nothing that is known here" : text;
+  return text.empty() ? "nothing that palpate knows of" : text;
 }
 
 struct HandLimits {

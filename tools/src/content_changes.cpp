@@ -38,7 +38,7 @@ ContentSetting readSetting(const std::string& text) {
   const auto equals = text.find('=');
   const auto at = text.rfind('@');
   if (equals == std::string::npos || at == std::string::npos || at < equals) {
-    throw usageError(text, "does not say what becomes what, and when");
+    throw usageError(text, "does not have the form MATERIAL.KEY=VALUE@TIME");
   }
   const std::string_view what(text.data(), equals);
   const std::string_view value(text.data() + equals + 1, at - equals - 1);
@@ -49,7 +49,7 @@ ContentSetting readSetting(const std::string& text) {
     setting.material = what.substr(0, what.size() - end.size());
     setting.key = key;
   }
-  if (setting.key.empty()) throw usageError(text, "names nothing that can change");
+  if (setting.key.empty()) throw usageError(text, "names a key that cannot change");
   if (setting.key == "viscosity") {
     setting.number = parseDamping(value, kOption);
   } else if (setting.key == "flow") {

@@ -24,7 +24,7 @@ Error usageError(std::string message, std::string hint = {}) {
 
 std::string askedName(const BakeOptions& options) {
   if (options.layers.size() > 1) {
-    throw usageError("one file is made from one grid; --layer was given twice");
+    throw usageError("--layer was given twice; this output is made from one grid");
   }
   return gridName(options.input, options.layers.empty() ? "" : options.layers.front());
 }
@@ -86,7 +86,7 @@ vdb::LevelSet straightened(const BakeOptions& options, Console& console) {
 void tellMarked(const BakeOptions& options, std::uint64_t voxels, Console& console) {
   if (voxels == 0) return;
   console.note(options.input + ": its inside was not marked; " + formatCount(voxels) +
-               " voxels beyond the band are now, and the band is as it was");
+               " voxels behind the band were marked, the band itself is unchanged");
 }
 
 }  // namespace
@@ -117,12 +117,13 @@ vdb::Image readDistances(const BakeOptions& options, Console& console) {
   const auto grid = summaryOf(options, name);
   const std::string grid_class = grid ? grid->grid_class : "";
   if (grid_class != "level set" && !(options.level_set && grid_class == "unknown")) {
-    throw inputError("vdb.class",
-                     "grid '" + name + "' is of class '" + grid_class +
-                         "', so nothing says that its values are signed distances",
-                     "if they are: --level-set; --above DENSITY or --labels VALUE put a surface "
-                     "around its voxels",
-                     options.input);
+    throw inputError(
+        "vdb.class",
+        "grid '" + name + "' has the class '" + grid_class +
+            "', which does not say that its values are signed distances",
+        "if they are, say so: --level-set; --above DENSITY or --labels VALUE put a surface "
+        "around its voxels",
+        options.input);
   }
   vdb::DistanceImage read = vdb::readVdbDistances(options.input, name, options.units);
   tellMarked(options, read.marked_inside, console);

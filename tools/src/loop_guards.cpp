@@ -22,7 +22,7 @@ CouplingRequest couplingRequest(const std::string& text) {
   const auto parts = split(text, ',');
   if (parts.empty() || parts.size() > 2) {
     throw usageError("--coupling is springs, any_scene, or STIFFNESS,DAMPING",
-                     "--coupling springs designs it for --device");
+                     "--coupling springs needs --device NAME, for which the coupling is designed");
   }
   request.stiffness = parseStiffness(parts[0], "--coupling");
   if (parts.size() == 2) request.damping = parseDamping(parts[1], "--coupling");
@@ -42,7 +42,8 @@ devices::HandGuards guardsOf(const TouchOptions& options, DeviceMapping mapping,
   }
   if (!options.hand_force.empty()) {
     if (!mapping.passivity) {
-      throw usageError("--hand-force is of the passivity controller", "add --passivity control");
+      throw usageError("--hand-force applies to the passivity controller only",
+                       "add --passivity control");
     }
     mapping.passivity->hand_force = parseForce(options.hand_force, "--hand-force");
   }
@@ -88,7 +89,7 @@ std::string guardsText(const devices::HandGuards& guards, const devices::Session
             (guards.passivity->controls ? ", and damped away\n" : "\n");
     if (guards.passivity->controls) {
       const double most = devices::PassivityController(*guards.passivity).mostStiffness();
-      text += "            a wall of more than " + formatNumber(most, 3) + " N/m feels like that\n";
+      text += "            stiffer walls feel like one of " + formatNumber(most, 3) + " N/m\n";
     }
   }
   return text;

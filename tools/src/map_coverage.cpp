@@ -134,7 +134,7 @@ std::string gapText(const MapGap& gap, const std::string& unit, double meters_pe
   } else {
     text += "covers " + formatNumber(100.0 * gap.share, 2) + " % of its layer";
   }
-  text += "; elsewhere its values are those of its rim";
+  text += "; elsewhere the values of its border are used";
   if (gap.size_ratio > kStrangeRatio || gap.size_ratio < 1.0 / kStrangeRatio) {
     text += ". It is " + formatNumber(gap.size_ratio, 2) +
             " times as long as the layer: is its length unit right (units: mm)?";

@@ -39,8 +39,9 @@ std::string chosenMotion(const TouchOptions& o) {
   if (isRealDevice(o.device.name)) {
     if (count == 0) return "--device " + o.device.name;
     throw usageError(
-        std::string(chosen) + ": a hand moves the device " + o.device.name + ", not a motion",
-        "leave it out, or follow it with the simulated one: --device virtual:NAME");
+        std::string(chosen) + ": a hand moves the device " + o.device.name +
+            ", so it takes no motion",
+        "leave the motion out, or let a simulated device follow it: --device virtual:NAME");
   }
   if (count != 1) {
     throw usageError(count == 0 ? "the hand's motion is missing" : "more than one motion was given",

@@ -17,14 +17,16 @@ constexpr std::string_view kSimulated = "virtual:";
 /// The preset for a name given on the command line.
 const devices::DevicePreset& presetOf(const DeviceOptions& options) {
   if (isInputDevice(options.name)) {
-    throw Error(ErrorKind::kUsage, {"usage.device", options.name + " has no motors, and no model",
-                                    "name a model: touch, premium_1_5, omega_3, ..."});
+    throw Error(ErrorKind::kUsage,
+                {"usage.device", options.name + " has no motors, so there is no model of it",
+                 "name a model: touch, premium_1_5, omega_3, ..."});
   }
   if (options.name == "hd" || options.name == "dhd") {
-    throw Error(ErrorKind::kUsage,
-                {"usage.device",
-                 options.name + " is whichever device its maker's library finds, not a model",
-                 "name the model: touch, premium_1_5, omega_3, ..."});
+    throw Error(
+        ErrorKind::kUsage,
+        {"usage.device",
+         options.name + " stands for any device that its maker's library finds, not for one model",
+         "name the model: touch, premium_1_5, omega_3, ..."});
   }
   const bool is_prefixed = options.name.rfind(kSimulated, 0) == 0;
   return devices::devicePreset(is_prefixed ? options.name.substr(kSimulated.size()) : options.name);
@@ -92,7 +94,7 @@ std::optional<devices::SimulationSettings> simulationOf(const DeviceOptions& opt
   if (options.name.empty()) {
     if (options.hand.empty() && !options.delay) return std::nullopt;
     throw Error(ErrorKind::kUsage,
-                {"usage.device", "--hand and --delay are of a device", "add --device NAME"});
+                {"usage.device", "--hand and --delay need a device", "add --device NAME"});
   }
   devices::SimulationSettings settings{.device = presetOf(options).model(),
                                        .hand = devices::handPreset(handName(options)),
@@ -118,22 +120,24 @@ std::optional<devices::LoopModel> touchLoop(const TouchOptions& options) {
 void checkDevice(const TouchOptions& options) {
   if (isRealDevice(options.device.name)) {
     if (!options.device.hand.empty() || options.device.delay) {
-      throw Error(ErrorKind::kUsage,
-                  {"usage.device", "--hand and --delay are of a simulated device",
-                   "a hand holds the device " + options.device.name +
-                       "; --device virtual:NAME is simulated"});
+      throw Error(
+          ErrorKind::kUsage,
+          {"usage.device", "--hand and --delay apply to simulated devices only",
+           options.device.name + " is held by a real hand; --device virtual:NAME is simulated"});
     }
     return;
   }
   const std::string given = options.seconds ? "--seconds" : givenOption(options.real);
   if (!given.empty()) {
-    throw Error(ErrorKind::kUsage, {"usage.device", given + " is of a device that a hand holds",
+    throw Error(ErrorKind::kUsage, {"usage.device", given + " applies to devices that a hand holds",
                                     "add --device falcon, inverse3, hd, dhd or evdev"});
   }
   const bool is_simulated = simulationOf(options.device, options.rate).has_value();
   if (is_simulated && options.as_recorded) {
     throw Error(ErrorKind::kUsage,
-                {"usage.device", "no device can follow the faults of --as-recorded",
+                {"usage.device",
+                 "--as-recorded cannot be used with a device: no device can follow the faults "
+                 "of a record",
                  "leave out --device or --as-recorded"});
   }
 }
@@ -150,10 +154,11 @@ std::unique_ptr<devices::Device> makeDevice(const TouchOptions& options, Motion 
   motion = inDevice(std::move(motion), mapping, options.rate);
   if (!staysWithin(motion, settings->device.workspace)) {
     const Vec3 size = 1e3 * settings->device.workspace.size();
-    console.warn("the motion leaves the workspace of " + settings->device.name + ", " +
-                 formatVector(size, 3) +
-                 " mm about the device's origin; what stops it there is not simulated. `device` of "
-                 "a scene says how the workspace lies in it");
+    console.warn(
+        "the motion leaves the workspace of " + settings->device.name + " (" +
+        formatVector(size, 3) +
+        " mm about the device's origin), whose end stops are not simulated; the key `device` of "
+        "a scene places the workspace");
   }
   if (motion.formula) {
     return std::make_unique<devices::SimulatedDevice>(*settings, std::move(*motion.formula));

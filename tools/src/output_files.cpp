@@ -175,9 +175,8 @@ void OutputFiles::announce(const std::string& path, const std::vector<std::strin
   std::error_code failed;
   const bool is_standard = path == kStandardOutput;
   if (is_standard && streams == Streams::kNo) {
-    throw Error(
-        ErrorKind::kUsage,
-        {"usage.output_stream", "this output cannot be written to standard output", "name a file"});
+    throw Error(ErrorKind::kUsage,
+                {"usage.output_stream", "this output cannot go to standard output", "name a file"});
   }
   if (is_standard && json_) {
     throw Error(ErrorKind::kUsage,

@@ -118,8 +118,8 @@ BakedParts bakeParts(const BakeOptions& options, Console& console) {
   }
   if (!is_any) {
     throw Error(ErrorKind::kOperation,
-                {"bake.no_parts", "no part of it is better off as a grid",
-                 "use the scene as it is; the notes say why", options.input});
+                {"bake.no_parts", "no part of the scene gains from being a grid",
+                 "use the scene as it is; the notes give the reasons", options.input});
   }
   out.scene = "# Made by `palpate bake --parts` from " + vdb::fileName(options.input) +
               ", with the grids of " + vdb::fileName(options.output) + ".\n" + sceneText(scene);

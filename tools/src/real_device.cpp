@@ -141,9 +141,9 @@ std::unique_ptr<devices::Device> makeRealDevice(const std::string& name,
   for (const GivenOption& option : optionsOf(options)) {
     const auto& of = option.devices;
     if (option.is_given && std::find(of.begin(), of.end(), name) == of.end()) {
-      throw Error(ErrorKind::kUsage,
-                  {"usage.device",
-                   std::string(option.name) + " is not an option of the device " + name, ""});
+      throw Error(
+          ErrorKind::kUsage,
+          {"usage.device", std::string(option.name) + " does not apply to the device " + name, ""});
     }
   }
   auto device = driverOf(name, options);

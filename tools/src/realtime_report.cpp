@@ -36,7 +36,7 @@ Json realtimeJson(const devices::ServoReport& servo, bool is_paced_by_device) {
 
 std::string realtimeText(const devices::ServoReport& servo, bool is_paced_by_device) {
   const std::string text =
-      is_paced_by_device ? "by the device's clock, from turn to turn " + latencyText(servo.interval)
+      is_paced_by_device ? "paced by the device; time between turns " + latencyText(servo.interval)
                          : std::to_string(servo.overruns) + " overruns; turns began late by " +
                                latencyText(servo.lateness);
   return "Real time   " + text + (servo.elevated ? "\n" : "; without real-time priority\n");

@@ -212,7 +212,7 @@ ReadAbout readAbout(const std::string& record) {
   ReadAbout out{.about = {}, .text = bytes.str()};
   const Json json = Json::parse(out.text, nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != Json(kSchema)) {
-    throw badAbout("this does not say what a record was made with", file);
+    throw badAbout("this is not the description (FILE.npy.json) of a record", file);
   }
   RecordAbout& about = out.about;
   const Values all(json, file);

@@ -34,14 +34,14 @@ vdb::Mesh readMeshFile(const std::string& file, const std::string& units,
   refuseScanOptions(options, true);
   const std::string prescribed = units.empty() ? vdb::prescribedUnit(file) : "";
   if (units.empty() && prescribed.empty()) {
-    console.note(file + ": one unit is taken as 1 mm; --units says otherwise");
+    console.note(file + ": one unit is taken as 1 mm; --units changes that");
   }
   const LengthUnit unit = prescribed.empty() ? meshUnit(units) : lengthUnit(prescribed);
   vdb::Mesh mesh = vdb::readMesh(file, unit.meters, spaceOf(options));
   // The note matters for models of scans; other meshes have no patient.
   if (options.space.empty() && (mesh.space_is_stated || vdb::hasExtension(file, ".vtk"))) {
-    console.note(file + ": coordinates are " + spaceText(mesh, options) +
-                 "; --space says otherwise");
+    console.note(file + ": coordinates are taken as " + spaceText(mesh, options) +
+                 "; --space changes that");
   }
   return mesh;
 }

@@ -57,7 +57,7 @@ double defaultVoxel(const LengthUnit& unit, const Box3& bounds, const std::strin
   const Vec3 size = bounds.size();
   const double voxel = std::max({size.x, size.y, size.z}) / kDefaultVoxelsPerSide;
   console.note(what + ": voxels of " + formatNumber(voxel / unit.meters, 3) + " " + unit.name +
-               ", 1/128 of the longest side; --voxel says otherwise");
+               ", 1/128 of the longest side; --voxel sets another size");
   return voxel;
 }
 
@@ -69,7 +69,7 @@ std::uint64_t memoryLeft(const BakeOptions& options, std::uint64_t taken) {
 
 Error withMemoryHint(const Error& error) {
   Problem problem = error.problem();
-  if (problem.code == "bake.memory") problem.hint += "; --max-memory says how much may be taken";
+  if (problem.code == "bake.memory") problem.hint += "; --max-memory sets the limit";
   return {error.kind(), std::move(problem)};
 }
 

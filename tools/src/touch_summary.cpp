@@ -173,10 +173,10 @@ std::string summaryText(const TouchSummary& s, const Scene& scene) {
   text += "\nPeak force  " + formatNumber(s.peak_force, 4) + " N";
   if (s.peak_force > 0.0) text += " at " + formatVector(s.peak_force_at / unit) + " " + name;
   if (s.peak_force > 0.0 && !s.is_peak_at_wall)
-    text += ", by contents (drag, for one): no wall is pressed there";
+    text += ", from contents such as drag: no wall is pressed there";
   text += "\nWork        " + formatNumber(s.work, 4) + " J on the hand";
   if (s.source_work != 0.0) {
-    text += ", where flows, lattices and walls met behind others gave " +
+    text += ", of which flows, lattices and walls met behind others gave " +
             formatNumber(s.source_work, 4) + " J";
   }
   text += "\nTicks       " + formatCount(s.ticks) + " in " + formatNumber(s.seconds, 4) +

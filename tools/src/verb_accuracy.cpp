@@ -99,7 +99,7 @@ Report run(const AccuracyOptions& options, const GeneralOptions& general, Consol
   const Machine machine = thisMachine();
   if (!machine.optimized) {
     console.warn("this is a " + machine.build_type +
-                 " build: its errors are those of any other, its times say nothing");
+                 " build: its errors are valid, its times are not");
   }
   const ScenePtr scene = loaded.compile();
   const std::vector<AskedField> asked = chosenFields(options, *scene);

@@ -99,13 +99,11 @@ void tellError(const BakedGrid& baked, Json& json, Console& console) {
                    {"holds_shape", holds_shape}};
   if (holds_shape) return;
   const double unit = info.meters_per_unit;
-  console.note(
-      info.name + " does not hold all of the shape: it is off by up to " +
-      formatNumber(error.off / unit, 2) + " " + info.length_unit + " and " +
-      formatNumber(error.turn / kDegree, 2) + " degrees, worst near " +
-      formatVector(error.where / unit, 3) + " " + info.length_unit +
-      ", where there is an edge, a thin part or a tight bend; --parts FILE.yaml keeps such "
-      "parts as they are");
+  console.note(info.name + " cannot hold the shape everywhere: it is off by up to " +
+               formatNumber(error.off / unit, 2) + " " + info.length_unit + " and " +
+               formatNumber(error.turn / kDegree, 2) + " degrees, worst near " +
+               formatVector(error.where / unit, 3) + " " + info.length_unit +
+               " (an edge, a thin part or a tight bend); --parts FILE.yaml keeps such parts exact");
 }
 
 /// Certifies a grid that was made here, so that its file holds what contact may rely on. Grids

@@ -106,13 +106,13 @@ Report run(const BenchOptions& options, const GeneralOptions& general, Console& 
   if (options.full || !options.devices.empty() || !options.curvature_svg.empty() ||
       (!is_servo && !options.rates.empty())) {
     throw usageError(
-        "--full, --device, --rate and --curvature-svg are not of bench " + options.what,
+        "--full, --device, --rate and --curvature-svg do not apply to bench " + options.what,
         "write palpate bench stability");
   }
   if (is_servo) return servoReport(options, console);
   if (!options.renderer.empty() && options.renderer != "constraint" &&
       options.renderer != "paper") {
-    throw usageError("the bench of contact has no renderer '" + options.renderer + "'",
+    throw usageError("bench contact has no renderer '" + options.renderer + "'",
                      "it has constraint and paper");
   }
   (void)chosenCases(options.scenes);
@@ -123,7 +123,7 @@ Report run(const BenchOptions& options, const GeneralOptions& general, Console& 
   const Machine machine = thisMachine();
   if (!machine.optimized) {
     console.warn("this is a " + machine.build_type +
-                 " build: its errors are those of any other, its times say nothing");
+                 " build: its errors are valid, its times are not");
   }
   const std::vector<BenchRow> rows = measureAll(options, console);
   if (!options.csv.empty()) files.write(options.csv, csvText(rows));

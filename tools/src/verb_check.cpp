@@ -18,7 +18,7 @@ FileCheck checkFile(const std::string& file, const CheckOptions& options, Consol
       break;
   }
   throw inputError("check.kind", "this is an image; check looks at meshes, grids and scenes",
-                   "palpate info says what it is; palpate bake makes a grid of it", file);
+                   "palpate info describes an image; palpate bake makes a grid of it", file);
 }
 
 }  // namespace

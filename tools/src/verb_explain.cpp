@@ -9,7 +9,7 @@ namespace palpate::tools {
 Report run(const ExplainOptions& options, const GeneralOptions& general, Console& console) {
   const double rate = options.rate.value_or(1000.0);
   if (options.rate && !simulationOf(options.device, rate)) {
-    throw Error(ErrorKind::kUsage, {"usage.explain", "--rate is of a device", "add --device NAME"});
+    throw Error(ErrorKind::kUsage, {"usage.explain", "--rate needs a device", "add --device NAME"});
   }
   OutputFiles files(general);
   if (!options.svg.empty())

@@ -134,9 +134,10 @@ void leaveOutAir(ImportedScan& scan, Console& console) {
     }
     const auto is_enclosed = [](const auto& piece) { return !piece.at_border; };
     if (scan.has_body && std::any_of(found.pieces.begin(), found.pieces.end(), is_enclosed)) {
-      console.note("'" + region.name +
-                   "' is air around the body and air in it: a region without walls of its own, "
-                   "open to outside");
+      console.note(
+          "'" + region.name +
+          "' holds air both around and inside the body: it becomes a region without walls of "
+          "its own, open to outside");
       kept.push_back(std::move(region));
       continue;
     }
@@ -343,7 +344,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
   for (const std::string& note : scan.plan.notes) console.note(note);
   tellUnknown(scan, console);
   if (!scan.has_body) {
-    console.note("no --skin and no --body: voxels without a label are outside");
+    console.note("without --skin or --body, voxels without a label belong to outside");
   }
   std::optional<NeedleWay> way;
   if (!options.to.empty()) {

@@ -44,14 +44,14 @@ class NewFolder {
         throw packError("file.exists", "it exists already", "--force replaces a bundle", wanted_);
       }
       if (!isBundle(wanted_) || fs::is_symlink(fs::symlink_status(wanted_, failed))) {
-        throw packError("file.exists", "it exists already and is not a bundle",
+        throw packError("file.exists", "the folder exists and is not a bundle",
                         "name another folder: only bundles are replaced", wanted_);
       }
       if (const auto foreign = foreignIn(wanted_)) {
-        throw packError(
-            "file.exists",
-            "the bundle there holds '" + *foreign + "', which is not of it and would be lost",
-            "move that out, or name another folder", wanted_);
+        throw packError("file.exists",
+                        "the bundle there holds '" + *foreign +
+                            "', which pack did not write and which would be lost",
+                        "move that out, or name another folder", wanted_);
       }
     }
     path_ = wanted_ + ".XXXXXX";

@@ -117,8 +117,8 @@ void checkOptions(const RenderOptions& o) {
   if (o.view.empty()) {
     if (is_moving || !o.opacity.empty() || !o.slices.empty() || !o.around.empty()) {
       throw usageError(
-          "--around, --opacity, --slice, --turn and --replay are of a picture in space",
-          "say from where it is seen: --view corner");
+          "--around, --opacity, --slice, --turn and --replay apply to pictures in space",
+          "add --view corner");
     }
   } else {
     if (o.forces && !is_cut) {

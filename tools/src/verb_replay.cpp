@@ -40,7 +40,7 @@ ReplayScene sceneOf(const ReplayOptions& options, const RecordAbout& about, Cons
   }
   const bool is_as_felt = sceneHash(about.scene, about.scene_text) == about.scene_hash;
   if (!is_as_felt) {
-    console.warn("the scene " + about.scene + " is not what it was when it was felt");
+    console.warn("the scene " + about.scene + " has changed since it was felt");
   }
   return {about.scene, about.scene_text, is_as_felt};
 }
@@ -66,13 +66,14 @@ std::optional<devices::SessionState> stateFor(const ReplayOptions& options, cons
       !options.renderer.empty() && options.renderer != read.about.renderer;
   if (!scene.is_as_felt || is_other_renderer) {
     console.note(
-        "another scene or renderer begins at the first tick: states are for those that "
-        "they were saved of");
+        "with another scene or renderer the replay begins at the first tick: a state fits "
+        "only the scene and renderer that saved it");
     return std::nullopt;
   }
   devices::StateReader states(statesFile(options.record), read.text);
   std::optional<devices::SessionState> state = states.before(options.from);
-  if (!state) console.warn("there is no whole state before that tick; begun at the first");
+  if (!state)
+    console.warn("no complete state lies before that tick, so the replay began at the first");
   return state;
 }
 
@@ -114,12 +115,12 @@ std::string reportText(const devices::ReplayReport& report, std::uint64_t begun_
   text += "Different   " + formatCount(report.different) + " ticks\n";
   text += "First       tick " + std::to_string(report.first->tick) + ", " +
           formatNumber(report.first->t, 6) + " s: " + report.first->what + "\n";
-  text += "Force       apart by up to " + formatNumber(report.most_force, 4) + " N" +
+  text += "Force       differs by up to " + formatNumber(report.most_force, 4) + " N" +
           at(report.most_force_tick, report.most_force);
-  text += "Proxy       apart by up to " +
+  text += "Proxy       differs by up to " +
           formatNumber(report.most_proxy / scene.metersPerUnit(), 4) + " " + scene.lengthUnit() +
           at(report.most_proxy_tick, report.most_proxy);
-  return text + "Regions     other in " + formatCount(report.regions) + " ticks, contact in " +
+  return text + "Regions     differ in " + formatCount(report.regions) + " ticks, contact in " +
          formatCount(report.contacts) + "\n";
 }
 

@@ -50,7 +50,7 @@ std::unique_ptr<LoadedScene> feltScene(const RecordAbout& about, Console& consol
     return nullptr;
   }
   if (sceneHash(about.scene, about.scene_text) != about.scene_hash) {
-    why_not = "The scene that was felt is not what it was, and is not shown: " + about.scene;
+    why_not = "The scene has changed since it was felt, so it is not shown: " + about.scene;
     return nullptr;
   }
   return std::make_unique<LoadedScene>(about.scene, console, 0, about.scene_text);
@@ -66,7 +66,7 @@ Report run(const ReportOptions& options, const GeneralOptions& general, Console&
     throw usage("the output " + options.output + " must end in .html", "");
   }
   if (options.rate && options.device.name.empty()) {
-    throw usage("--rate is of a device", "add --device NAME");
+    throw usage("--rate needs a device", "add --device NAME");
   }
   const double rate = options.rate.value_or(1000.0);
   (void)simulationOf(options.device, rate);  // reports errors in these options before any work

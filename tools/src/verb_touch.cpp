@@ -138,8 +138,8 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   warnOfBudget(session.overBudget(), options.device, is_shape ? "" : options.scene, options.rate,
                console);
   if (is_real) {
-    console.note(options.device.name + ": " + noticeOf(options.device.name) + "; touching until " +
-                 (options.seconds ? formatSeconds(*options.seconds) + " are over" : "Ctrl-C"));
+    console.note(options.device.name + ": " + noticeOf(options.device.name) + "; touching " +
+                 (options.seconds ? "for " + formatSeconds(*options.seconds) : "until Ctrl-C"));
   } else if (options.realtime) {
     console.note("following the hand's path for " + formatSeconds(motion.end - motion.begin) +
                  " in real time");

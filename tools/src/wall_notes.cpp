@@ -28,8 +28,8 @@ std::vector<WallNote> wallNotes(const Scene& scene) {
     note.code = "scene.contrast";
     note.place = each.at;
     note.is_warning = each.sideways > kMuchSideways;
-    note.text = "the stiffness of " + name + " changes by as much as it is within " +
-                lengthText(each.length) + ", about " + placeText(each.at) +
+    note.text = "the stiffness of " + name + " changes by its own size within " +
+                lengthText(each.length) + ", near " + placeText(each.at) +
                 ": there it pushes sideways up to " + formatNumber(each.sideways, 2) +
                 " times as hard as the wall pushes back";
     note.json = {{"material", name},
@@ -45,11 +45,12 @@ std::vector<WallNote> wallNotes(const Scene& scene) {
     note.code = "scene.shading_band";
     note.place = each.at;
     note.is_warning = true;
-    note.text = "the shading of " + name + " looks " + lengthText(each.needed) + " far, but of " +
-                layer + " no more than " + lengthText(each.known) +
-                " beside its surface is known (about " + placeText(each.at) +
-                "): it is felt less round than it was asked for. A wider band (half_width) or a "
-                "shorter shading helps";
+    note.text =
+        "the shading of " + name + " needs " + lengthText(each.needed) +
+        " beside the surface, and the grid of " + layer + " knows only " + lengthText(each.known) +
+        " (near " + placeText(each.at) +
+        "): it feels less round than it was asked for; give the grid a wider band (half_width) "
+        "or use less shading";
     note.json = {{"material", name},
                  {"layer", layer},
                  {"at_m", vectorJson(each.at)},

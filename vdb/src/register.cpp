@@ -118,8 +118,10 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
       if (made.left_to_grid > 0) {
         common->notes->add(
             path, {std::to_string(made.left_to_grid) + " of " + std::to_string(made.edges) +
-                   " sharp edges are rounded as in a grid, as parts overlap beside them, at " +
-                   eachInMillimeters(made.place) + " for one; one solid would keep them sharp"});
+                   " sharp edges are rounded as in a grid, because parts overlap beside them (for "
+                   "example at " +
+                   eachInMillimeters(made.place) +
+                   "); join the parts into one solid to keep them sharp"});
       }
       return std::move(made.field);
     };
@@ -364,7 +366,7 @@ SceneRegistry::LayerSurface thresholdLayer(const CommonPtr& common, const MapRea
   const bool is_below = reader.has("below");
   if (is_below && reader.has("above")) {
     throw reader.errorAt("below", "scene.kind", "'threshold' has both 'above' and 'below'",
-                         "a surface lies around what is greater, or around what is less");
+                         "give one: the inside is either above or below the value");
   }
   const char* key = is_below ? "below" : "above";
   if (!reader.has(key)) {

@@ -29,7 +29,7 @@ HybridOptions readOptions(const MapReader& reader) {
   options.sampler = readSampler(reader);
   if (options.parts == Parts::kWhole && options.tolerance > 0.0) {
     throw reader.errorAt("tolerance", "scene.range",
-                         "one grid of the whole is made as it is, whatever its error",
+                         "'tolerance' has no effect with parts: whole, one grid whatever its error",
                          "leave out tolerance, or write parts: auto or parts: operands");
   }
   return options;
@@ -66,7 +66,7 @@ std::string readFile(const MapReader& reader) {
     if (!reader.has(key)) continue;
     throw reader.errorAt(
         key, "scene.range",
-        "'" + key + "' is for grids that are made; those of a file are as they are",
+        "'" + key + "' applies to grids that are made here; those of a file cannot be changed",
         "leave out " + key + ", or leave out file");
   }
   return readExistingFile(reader, "file");

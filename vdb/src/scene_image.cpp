@@ -49,10 +49,8 @@ const Image& ImageFile::image() {
   if (!has_voxels_) {
     throw inputError(
         "pack.no_scan",
-        "this stands for a scan that is not in the bundle: only layers that were "
-        "packed can be made",
-        "leave the layer, and those that share its image, as they were packed, or name the scan",
-        path_);
+        "the scan is not in the bundle, so only the layers that were packed can be made",
+        "undo changes to the layers of this image, or name the scan itself", path_);
   }
   if (!image_) {
     decoded_ = SourceState(foldersAndFiles());

@@ -81,7 +81,7 @@ Transfer readTransfer(const MapReader& reader, const ParameterKind& of) {
     const auto to = quantityOf(reader.loader(), item.items[1], of.dimension);
     if (!to || (*to < 0.0 && !of.is_signed)) {
       throw document.error(item.items[1].mark, "scene.quantity",
-                           "this is no '" + of.key + (of.is_signed ? "'" : "' of 0 or more"),
+                           "this is not a '" + of.key + (of.is_signed ? "'" : "' of 0 or more"),
                            "write " + unitsOf(of.dimension));
     }
     if (!transfer.empty() && !(*value > transfer.back().first)) {

@@ -35,7 +35,7 @@ LevelSet surfaceOfMask(const MaskOptions& options, const BakeOptions& bake,
                        const Progress& progress) {
   const VdbGridSummary grid = chosen(options);
   if (grid.grid_class == "level set") {
-    throw inputError("vdb.class", grid.name + " is a level set: it says how far, not only where",
+    throw inputError("vdb.class", grid.name + " is a level set, which holds distances, not a mask",
                      "write grid: {file: ...} instead of mask", options.file);
   }
   if (options.above && !isDensity(grid)) {

@@ -50,12 +50,13 @@ std::string findNode() {
     if (each.kind && (best == nullptr || *each.kind < *best->kind)) best = &each;
   }
   if (best != nullptr) return best->node;
-  throw Error(ErrorKind::kDevice,
-              {is_denied ? "evdev.access" : "evdev.none",
-               is_denied ? "this user may not open every input device, and none of the others is a "
-                           "SpaceMouse, a gamepad or a mouse"
-                         : "no SpaceMouse, gamepad or mouse is plugged in",
-               is_denied ? inputAccessRemedy() : "plug one in"});
+  throw Error(
+      ErrorKind::kDevice,
+      {is_denied ? "evdev.access" : "evdev.none",
+       is_denied ? "no SpaceMouse, gamepad or mouse was found, and some input devices cannot "
+                   "be opened by this user"
+                 : "no SpaceMouse, gamepad or mouse is plugged in",
+       is_denied ? inputAccessRemedy() : "plug one in"});
 }
 
 class EvdevDevice final : public Device {
@@ -129,7 +130,7 @@ void EvdevDevice::openNode(const std::string& path) {
   hand_.emplace(*map, settings_, began_);
   place_ = hand_->position();
   if (!askAll()) {
-    throw Error(ErrorKind::kDevice, {"evdev.open", path + " does not say what it is at",
+    throw Error(ErrorKind::kDevice, {"evdev.open", path + " does not report its present state",
                                      "unplug the device and plug it in again"});
   }
 }

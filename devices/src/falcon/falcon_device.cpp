@@ -83,9 +83,10 @@ void FalconDevice::start() {
   if (answers()) return;
   if (firmware_.empty()) {
     throw Error(ErrorKind::kDevice,
-                {"falcon.firmware", "the Falcon runs no firmware yet",
-                 "give its image: it comes with the device's driver, or lies in the "
-                 "folder firmware/ of libnifalcon; Palpate must not ship it"});
+                {"falcon.firmware", "the Falcon has no firmware loaded",
+                 "give the firmware image (on the command line --firmware FILE): it comes "
+                 "with the device's driver, or with libnifalcon in its folder firmware/; "
+                 "Palpate may not ship it"});
   }
   loadFirmware();
   normal();

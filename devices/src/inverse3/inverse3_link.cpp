@@ -53,9 +53,9 @@ class Link::Work {
   void start() {
     auto first = first_.get_future();
     if (event_ < 0) {
-      throw Error(
-          ErrorKind::kOperation,
-          {"device.eventfd", "the system has no file descriptor left", "close other programs"});
+      throw Error(ErrorKind::kOperation,
+                  {"device.eventfd", "no file descriptor is free: too many files are open",
+                   "close other programs"});
     }
     began_ = monotonicNs();
     connect();
@@ -91,7 +91,7 @@ class Link::Work {
       first_.set_exception(std::make_exception_ptr(
           Error(ErrorKind::kDevice,
                 {"device.service",
-                 "no Inverse3 by the service at " + settings_.host + ":" +
+                 "no Inverse3 can be reached through the service at " + settings_.host + ":" +
                      std::to_string(settings_.port) + ": " + why,
                  "install and start Haply's Inverse Service, and plug the device in"})));
     }

@@ -35,7 +35,7 @@ void checkLength(std::string_view shape, std::string_view parameter, double valu
   if (isLength(value)) return;
   throw inputError(
       "field.bad_length",
-      place(shape, parameter) + " is " + exactNumber(value) + ", permitted is " + lengthRange(),
+      place(shape, parameter) + " is " + exactNumber(value) + "; it must be " + lengthRange(),
       "lengths are positive and in meters");
 }
 
@@ -47,27 +47,27 @@ void checkRange(std::string_view shape, std::string_view parameter, double value
                 double highest) {
   if (value >= lowest && value <= highest) return;
   throw inputError("field.out_of_range", place(shape, parameter) + " is " + exactNumber(value) +
-                                             ", permitted is from " + exactNumber(lowest) + " to " +
+                                             "; it must be from " + exactNumber(lowest) + " to " +
                                              exactNumber(highest));
 }
 
 void checkFinite(std::string_view shape, std::string_view parameter, double value) {
   if (std::isfinite(value)) return;
   throw inputError("field.not_finite", place(shape, parameter) + " is " + exactNumber(value) +
-                                           ", permitted is a finite number");
+                                           "; it must be a finite number");
 }
 
 void checkPoint(std::string_view shape, std::string_view parameter, const Vec3& value) {
   if (isFinite(value)) return;
   throw inputError("field.not_finite", place(shape, parameter) + " is " + text(value) +
-                                           ", permitted are three finite numbers");
+                                           "; it must be three finite numbers");
 }
 
 void checkLengths(std::string_view shape, std::string_view parameter, const Vec3& value) {
   if (isLength(value.x) && isLength(value.y) && isLength(value.z)) return;
   throw inputError("field.bad_length",
-                   place(shape, parameter) + " is " + text(value) + ", permitted is " +
-                       lengthRange() + " for each of the three",
+                   place(shape, parameter) + " is " + text(value) + "; each of the three must be " +
+                       lengthRange(),
                    "lengths are positive and in meters");
 }
 
@@ -80,14 +80,14 @@ Vec3 checkedDirection(std::string_view shape, std::string_view parameter, const 
     return direction.direction / glm::length(direction.direction);
   }
   throw inputError("field.zero_direction",
-                   place(shape, parameter) + " is " + text(value) + " and has no direction",
-                   "permitted is any vector but zero; its length does not matter");
+                   place(shape, parameter) + " is " + text(value) + ", which has no direction",
+                   "give any vector but zero; its length does not matter");
 }
 
 FieldPtr checkedOperand(std::string_view shape, FieldPtr value) {
   if (value) return value;
   throw inputError("field.null_operand",
-                   std::string(shape) + ": the operand is null, permitted is a field");
+                   std::string(shape) + ": the operand is null; it must be a field");
 }
 
 void checkOperands(std::string_view shape, const std::vector<FieldPtr>& operands,
@@ -95,13 +95,13 @@ void checkOperands(std::string_view shape, const std::vector<FieldPtr>& operands
   if (operands.size() < fewest) {
     throw inputError("field.too_few_operands",
                      std::string(shape) + ": there are " + std::to_string(operands.size()) +
-                         " operands, permitted is " + std::to_string(fewest) + " or more");
+                         " operands; there must be " + std::to_string(fewest) + " or more");
   }
   for (std::size_t i = 0; i < operands.size(); ++i) {
     if (operands[i]) continue;
     throw inputError("field.null_operand",
                      std::string(shape) + ": operand " + std::to_string(i + 1) + " of " +
-                         std::to_string(operands.size()) + " is null, permitted is a field");
+                         std::to_string(operands.size()) + " is null; it must be a field");
   }
 }
 
@@ -119,9 +119,9 @@ void checkBand(std::string_view shape, const Field& field, double reach) {
     const FieldSample s = field.sample(bounds.lo + share * (1.0 / kSteps) * bounds.size());
     if (s.in_band || std::fabs(s.value) >= reach) continue;
     throw inputError("field.band_too_narrow",
-                     std::string(shape) + ": it needs its field up to " + exactNumber(reach) +
-                         " m from the surface, permitted is up to " +
-                         exactNumber(std::fabs(s.value)) + " m, where the band of its grid ends",
+                     std::string(shape) + ": it needs distances up to " + exactNumber(reach) +
+                         " m from the surface, and the band of the grid ends at " +
+                         exactNumber(std::fabs(s.value)) + " m",
                      "make the band wider, or the voxels larger");
   }
 }

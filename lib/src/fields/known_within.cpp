@@ -82,7 +82,7 @@ class KnownWithin final : public Field {
 FieldPtr knownWithin(FieldPtr field, const Box3& box) {
   field = fields::checkedOperand("knownWithin", std::move(field));
   if (box.isEmpty()) {
-    throw inputError("field.empty_box", "the box to know a field in is empty",
+    throw inputError("field.empty_box", "the box within which a field is known is empty",
                      "give a box whose lower corner lies below the upper one");
   }
   return std::make_shared<KnownWithin>(std::move(field), box);

@@ -210,7 +210,7 @@ Box3 boundsOf(const std::vector<Metaball>& balls, FallOff fall_off, double iso) 
   if (!(most > iso)) {
     throw inputError("field.no_surface",
                      "metaballs: the positive strengths add up to " + std::to_string(most) +
-                         ", permitted is more than iso = " + std::to_string(iso));
+                         "; they must add up to more than iso = " + std::to_string(iso));
   }
   Box3 box;
   for (const Metaball& ball : balls) {
@@ -228,7 +228,7 @@ Box3 boundsOf(const std::vector<Metaball>& balls, FallOff fall_off, double iso) 
 FieldPtr metaballs(std::vector<Metaball> balls, FallOff fall_off, double iso) {
   if (balls.empty()) {
     throw inputError("field.too_few_operands",
-                     "metaballs: there are 0 balls, permitted is 1 or more");
+                     "metaballs: there are 0 balls; there must be 1 or more");
   }
   fields::checkRange("metaballs", "iso", iso, 1e-9, 1e9);
   double scale = kInfinity;

@@ -106,8 +106,8 @@ Shape shapeOf(const Form& form) {
   const bool is_positive = positive == curved;
   if (is_even && ((is_positive && constant >= 0.0) || (positive == 0 && constant <= 0.0))) {
     throw inputError("field.no_surface",
-                     "quadric: the polynomial has the same sign everywhere, permitted are "
-                     "coefficients with a zero set",
+                     "quadric: the polynomial has the same sign everywhere, so it has no "
+                     "surface",
                      "inside is where it is negative; check the sign of the constant");
   }
   // On the surface |gradient|^2 >= 4 |constant| smallest + flat_slope^2, and each curvature is at
@@ -158,8 +158,8 @@ FieldPtr quadric(const Vec3& center, const QuadricCoefficients& coefficients, do
   form.c = q.constant * scale;
   if (form.a == Mat3(0.0) && form.b == Vec3(0.0)) {
     throw inputError("field.no_surface",
-                     "quadric: all coefficients but the constant are 0, permitted is a polynomial "
-                     "that depends on x, y or z");
+                     "quadric: all coefficients but the constant are 0; the polynomial must "
+                     "depend on x, y or z");
   }
   const Shape shape = shapeOf(form);
   Box3 domain{Vec3(-reach), Vec3(reach)};

@@ -116,9 +116,9 @@ FieldPtr place(FieldPtr field, const Pose& pose) {
   fields::checkPoint("transform", "translation", pose.translation);
   if (!isRotation(pose.rotation)) {
     throw inputError("field.not_rigid",
-                     "transform: the rotation is not a rotation, permitted are orthonormal "
-                     "columns (to 1e-9) with determinant +1",
-                     "a scale belongs into the shape's own sizes");
+                     "transform: the matrix is not a rotation; its columns must be orthonormal "
+                     "(to 1e-9), its determinant +1",
+                     "to scale a shape, change its own sizes");
   }
   return std::make_shared<Placed>(std::move(operand),
                                   Pose{nearestRotation(pose.rotation), pose.translation});

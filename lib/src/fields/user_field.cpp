@@ -69,7 +69,7 @@ class UserField final : public Field {
 
 FieldPtr userField(UserFunction function) {
   if (!function.value) {
-    throw inputError("field.no_function", "user field: value is empty, permitted is a function");
+    throw inputError("field.no_function", "user field: `value` is empty; it must be a function");
   }
   fields::checkLength("user field", "feature_size", function.feature_size);
   fields::checkRange("user field", "lipschitz", function.lipschitz, 1e-12, 1e12);

@@ -82,11 +82,10 @@ void Passages::giveSlots() {
   }
   if (counted_.size() <= PassedPorts::kCapacity) return;
   throw inputError("scene.too_many_counted_ports",
-                   "`after` names " + std::to_string(counted_.size()) +
-                       " different ports, and passings are counted of " +
-                       std::to_string(PassedPorts::kCapacity) + " at most",
-                   "name fewer: a port that comes after another need not name what that one "
-                   "comes after");
+                   "all `after` together name " + std::to_string(counted_.size()) +
+                       " different ports; passings can be counted of at most " +
+                       std::to_string(PassedPorts::kCapacity),
+                   "name fewer: if port c comes after b, and b after a, then c need not name a");
 }
 
 Facet Passages::facet(const Partition& partition, RegionId from, RegionId beyond, const Signs& here,

@@ -102,7 +102,7 @@ CarriedState carryState(const RendererState& sealed, RendererKind kind, const Sc
   TickState after;
   after.kind = kind;
   if (!isStateOf(state, kind, from)) {
-    out.lost.emplace_back("all: this is not a state of such a renderer of that scene");
+    out.lost.emplace_back("all of it: the state is of another kind of renderer or another scene");
     after.guard = state.guard;
     after.guard.reset();
     after.last.region = to.startRegion();

@@ -31,7 +31,7 @@ void refuseWhatThePaperHasNot(const Scene& scene) {
   for (const Region& region : scene.regions()) {
     if (region.left_out.empty()) continue;
     throw inputError("render.paper_left_out",
-                     "the paper's renderer wants all layers, and '" + region.name +
+                     "the paper's renderer needs all layers, and '" + region.name +
                          "' was left out: " + region.left_out,
                      "compile the scene for Purpose::kShow");
   }

@@ -48,9 +48,9 @@ class Numbers {
 
 const std::string& nameOf(std::span<const std::string> names, std::size_t id, const char* what) {
   if (id < names.size()) return names[id];
-  throw inputError("trace.name", std::string("the trace has the ") + what + " number " +
-                                     std::to_string(id) + ", but only " +
-                                     std::to_string(names.size()) + " have a name");
+  throw inputError("trace.name", std::string("the trace has ") + what + " number " +
+                                     std::to_string(id) + ", but names for only " +
+                                     std::to_string(names.size()));
 }
 
 /// The ports of one tick as one field.

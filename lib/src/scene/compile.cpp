@@ -91,7 +91,7 @@ Partition SceneCompiler::makePartition(const Progress& progress) {
   for (const SheetDescription& sheet : description_.sheets) {
     if (!sheet.on) {
       throw errorAt(sheet.place, "scene.sheet_without_field",
-                    "sheet " + inQuotes(sheet.name) + " has no field that it is on");
+                    "sheet " + inQuotes(sheet.name) + " does not say which field it is on");
     }
     sheet_mask_of_.push_back(sheet.where ? static_cast<int>(masks.size()) : -1);
     if (sheet.where) masks.push_back(made(sheet.where, progress));

@@ -73,10 +73,10 @@ std::vector<Port> SceneCompiler::makePorts() {
     for (const Parameter& force : {port.opens_at, port.back, given.reopens_at}) {
       const MaterialMap::Range range = force.range();
       if (range.least >= 0.0 && range.least <= range.most && std::isfinite(range.most)) continue;
-      throw errorAt(
-          given.place, "scene.parameter",
-          "port " + inQuotes(given.name) + " opens at a force that is not 0 N or more everywhere",
-          "all values of opens_at, back and reopens_at must be finite numbers from 0 on");
+      throw errorAt(given.place, "scene.parameter",
+                    "the force at which port " + inQuotes(given.name) +
+                        " opens is negative or not finite somewhere",
+                    "opens_at, back and reopens_at must be finite and 0 N or more everywhere");
     }
     if (!(given.rate.ratio > 0.0 && std::isfinite(given.rate.ratio)) ||
         !(given.rate.speed >= 0.0 && std::isfinite(given.rate.speed)) ||
@@ -101,8 +101,9 @@ std::vector<Port> SceneCompiler::makePorts() {
     for (const AfterDescription& before : given.after) {
       if (before.times < 1) {
         throw errorAt(given.place, "scene.range",
-                      "port " + inQuotes(given.name) + " comes after " + inQuotes(before.port) +
-                          " was passed " + std::to_string(before.times) + " times",
+                      "`after` of port " + inQuotes(given.name) + " asks that " +
+                          inQuotes(before.port) + " was passed " + std::to_string(before.times) +
+                          " times",
                       "`times` must be 1 or more");
       }
       port.after.emplace_back(portNamed(before.port, given), before.times);

@@ -12,7 +12,7 @@ namespace {
 FieldPtr checked(FieldPtr made, const std::string& summary) {
   if (!made) {
     throw inputError("field.empty",
-                     "nothing came of the field" + (summary.empty() ? "" : " " + summary));
+                     "the field" + (summary.empty() ? "" : " " + summary) + " could not be made");
   }
   return made;
 }

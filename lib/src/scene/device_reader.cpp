@@ -25,13 +25,15 @@ CouplingRequest readCoupling(const MapReader& reader) {
   CouplingRequest coupling;
   coupling.stiffness = given(reader, "stiffness");
   if (reader.has("damping") && !coupling.stiffness) {
-    throw reader.errorAt("damping", "scene.coupling", "a 'damping' goes beside a 'stiffness'",
-                         "give both, or neither: the coupling is then designed for the device");
+    throw reader.errorAt("damping", "scene.coupling", "'damping' needs a 'stiffness' beside it",
+                         "give both; or neither, and the coupling is designed for the device");
   }
   if (reader.has("for") && coupling.stiffness) {
-    throw reader.errorAt("for", "scene.coupling",
-                         "a coupling with a 'stiffness' is not designed for anything",
-                         "leave out 'for' or 'stiffness'");
+    throw reader.errorAt(
+        "for", "scene.coupling",
+        "'for' and 'stiffness' cannot be used together: a coupling whose stiffness is "
+        "given is not designed",
+        "leave out one of the two");
   }
   coupling.damping = reader.value("damping");
   if (reader.choice("for") == 1) coupling.design = CouplingRequest::For::kAnyScene;
@@ -50,7 +52,7 @@ DeviceMapping readDevice(const MapReader& reader) {
   if (const Node* workspace = reader.find("workspace")) {
     device.workspace = reader.loader().field(*workspace)->get()->bounds();
     if (!device.workspace.isBounded()) {
-      throw reader.errorAt("workspace", "scene.range", "'workspace' has no end",
+      throw reader.errorAt("workspace", "scene.range", "'workspace' reaches to infinity",
                            "give a box or a sphere, in the device's own coordinates");
     }
   }

@@ -58,7 +58,7 @@ std::shared_ptr<const Document> readDocument(const std::string& path) {
     throw fail("this is a folder", "name the scene file in it");
   }
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw fail("cannot be opened", "may you read it?");
+  if (!stream) throw fail("cannot be opened", "check its permissions");
   // Read one byte more than is allowed: that detects a longer text even if its size is not known (a
   // pipe).
   std::string text(kLargestDocument + 1, '\0');

@@ -57,9 +57,9 @@ FieldSourcePtr FieldReader::read(const Node& node) {
 
 FieldSourcePtr FieldReader::readName(const Node& node, const std::string& what) {
   if (node.kind == Node::Kind::kMap) {
-    throw loader_.document().error(node.mark, "scene.kind",
-                                   what + " wants the name of a field, not a field of its own",
-                                   "define it in `fields`, and use its name in the layer too");
+    throw loader_.document().error(
+        node.mark, "scene.kind", what + " must be the name of a field, not a field written out",
+        "define the field in `fields`, and use its name here and in the layer");
   }
   const std::string name = readText(loader_.document(), node, what);
   return buildNamed(name, node.mark).source;
@@ -80,9 +80,8 @@ const FieldReader::Built& FieldReader::buildNamed(const std::string& name, Mark 
     for (auto at = std::find(path_.begin(), path_.end(), name); at != path_.end(); ++at) {
       cycle += *at + " -> ";
     }
-    throw document.error(mark, "scene.cycle",
-                         "the field " + inQuotes(name) + " is defined by itself",
-                         "the circle: " + cycle + name);
+    throw document.error(mark, "scene.cycle", "the field " + inQuotes(name) + " is made of itself",
+                         "the chain of names: " + cycle + name);
   }
   named.under_way = true;
   path_.push_back(name);
@@ -103,8 +102,9 @@ std::string FieldReader::hidingPlace(const std::string& name) const {
   const auto found = named_.find(name);
   if (found == named_.end() || found->second.hidden_in == nullptr) return {};
   const Node::Entry& blend = *found->second.hidden_in;
-  return inQuotes(name) + " went into the " + blend.key + " in line " +
-         std::to_string(blend.key_mark.line) + ", whose faces are new ones; name that whole field";
+  return inQuotes(name) + " is part of the " + blend.key + " in line " +
+         std::to_string(blend.key_mark.line) +
+         ", which makes new faces; name that whole field instead";
 }
 
 FieldReader::Built FieldReader::build(const Node& node) {
@@ -112,7 +112,7 @@ FieldReader::Built FieldReader::build(const Node& node) {
   const auto too_deep = [&] {
     return document.error(
         node.mark, "scene.depth",
-        "this field has fields in fields, more than " + std::to_string(kDeepestNesting) + " deep");
+        "fields are nested more than " + std::to_string(kDeepestNesting) + " deep here");
   };
   // The depth is checked on the way in, so that a long chain of names cannot exhaust the stack, and
   // on the way out, because a chain defined in the other order arrives here without depth.
@@ -123,10 +123,11 @@ FieldReader::Built FieldReader::build(const Node& node) {
                            "write one kind: " + listed(kinds()));
     }
     if (node.entries.size() > 1) {
-      throw document.error(node.entries[1].key_mark, "scene.kind",
-                           "a field is of one kind; this has " + inQuotes(node.entries[0].key) +
-                               " and " + inQuotes(node.entries[1].key),
-                           "combine fields with union, intersection or difference");
+      throw document.error(
+          node.entries[1].key_mark, "scene.kind",
+          "a field has one kind; this one has two: " + inQuotes(node.entries[0].key) + " and " +
+              inQuotes(node.entries[1].key),
+          "combine fields with union, intersection or difference");
     }
     refuseEmpty(document, node.entries[0]);
     ++depth_;
@@ -136,7 +137,7 @@ FieldReader::Built FieldReader::build(const Node& node) {
     if (built.leaves > kMostLeaves) {
       throw document.error(
           node.mark, "scene.too_many_fields",
-          "this field comes to more than " + std::to_string(kMostLeaves) + " simple ones");
+          "this field is made of more than " + std::to_string(kMostLeaves) + " simple fields");
     }
     return built;
   }
@@ -146,7 +147,8 @@ FieldReader::Built FieldReader::build(const Node& node) {
     --depth_;
     return built;
   }
-  throw document.error(node.mark, "scene.kind", "a field is a name or a map of one kind",
+  throw document.error(node.mark, "scene.kind",
+                       "a field is a name, or a map with one key: its kind",
                        "{union: [...]} makes one field of a list");
 }
 
@@ -189,7 +191,7 @@ FieldReader::Built FieldReader::buildRegistered(const Node::Entry& kind) {
   reader.finish();
   if (!source) {
     throw document.error(kind.key_mark, "scene.no_reader",
-                         "nothing came of this " + inQuotes(kind.key));
+                         "this " + inQuotes(kind.key) + " could not be made");
   }
   return {std::move(source), std::max<std::size_t>(operands.leaves, 1), operands.height + 1};
 }

@@ -38,7 +38,7 @@ void readGrids(const MapReader& reader, const SceneRegistry& registry, SceneDesc
   choice.place = document.place(reader.node().mark);
   const std::vector<std::string> keep = readKeep(reader, scene);
   if (!registry.choose_grids) {
-    throw document.error(reader.node().mark, "scene.no_reader", "this program makes no grids",
+    throw document.error(reader.node().mark, "scene.no_reader", "this program cannot make grids",
                          "palpate::vdb makes them, and is not part of this program");
   }
   for (const PortDescription& port : scene.ports) {

@@ -11,8 +11,9 @@ namespace {
 void checkParameter(const Parameter& parameter, const std::string& name, const std::string& of) {
   const MaterialMap::Range range = parameter.range();
   if (range.least >= 0.0 && range.least <= range.most && std::isfinite(range.most)) return;
-  throw inputError("scene.parameter", "the " + name + " of " + of + " is not 0 or more everywhere",
-                   "all its values must be finite numbers from 0 on");
+  throw inputError("scene.parameter",
+                   "the " + name + " of " + of + " is negative or not finite somewhere",
+                   "it must be finite and 0 or more everywhere");
 }
 
 void checkTexture(const Material& material) {
@@ -49,11 +50,13 @@ void checkTissue(const Material& material, const std::string& of) {
   const Vec3& waves = lattice.wavelength;
   refuse(!isFinite(waves) || !isFinite(lattice.origin) || waves.x < 0.0 || waves.y < 0.0 ||
              waves.z < 0.0,
-         "its lattice has no proper waves", "its wavelengths must be 0 or more");
+         "the wavelengths or the origin of its lattice are not valid",
+         "the wavelengths must be finite and 0 or more, the origin finite");
   refuse(lattice.force.range().most > 0.0 &&
              !(lattice.hasWaves() && lattice.force.range().most <= lattice.highestForce(stiffness)),
-         "its lattice is stiffer than itself",
-         "its force must not be more than its stiffness times the shortest wavelength / 2 pi");
+         "its lattice is stiffer than the material",
+         "its force must not be more than the material's stiffness times the shortest wavelength / "
+         "2 pi");
   checkParameter(material.cutting, "cutting force", of);
   refuse(material.cutting.range().most > 0.0 && !(stiffness > 0.0),
          "it has a cutting force and no stiffness", "give it one, such as 300 N/m");
@@ -63,18 +66,19 @@ void checkTissue(const Material& material, const std::string& of) {
          "its shaft friction is out of range", "stiffness and stick speed must be 0 or more");
   refuse(!(shaft.lateral.stiffness >= 0.0 && std::isfinite(shaft.lateral.stiffness) &&
            shaft.lateral.strength > 0.0),
-         "its shaft is held sideways by what is out of range",
+         "a value that holds its shaft sideways is out of range",
          "the lateral stiffness must be 0 or more, the strength more than 0");
   refuse(shaft.lateral.stiffness > 0.0 && !(shaft.stiffness > 0.0),
-         "its shaft is held sideways only", "give the shaft's friction a stiffness too");
+         "its shaft is held sideways but has no stiffness along its way",
+         "give the shaft's friction a stiffness too");
   for (const ShaftFriction::Way* way : {&shaft.in, &shaft.out}) {
     checkParameter(way->static_force, "static shaft friction", of);
     checkParameter(way->kinetic_force, "kinetic shaft friction", of);
     checkParameter(way->damping, "damping of the shaft", of);
     refuse(way->kinetic_force.range().least > way->static_force.range().least ||
                way->kinetic_force.range().most > way->static_force.range().most,
-           "its kinetic shaft friction exceeds the static",
-           "what slides is held less than what sticks");
+           "its kinetic shaft friction is more than its static one",
+           "lower the kinetic friction, or raise the static one");
   }
 }
 
@@ -84,8 +88,8 @@ void checkComposite(const Material& material) {
       !std::isfinite(composite.radius + composite.depth)) {
     throw inputError(
         "scene.parameter",
-        "the composite of material " + inQuotes(material.name) + " has no radius or no depth",
-        "both must be more than 0, or the radius 0 for none");
+        "the composite of material " + inQuotes(material.name) + " lacks a radius or a depth",
+        "both must be more than 0; a radius of 0 means no composite");
   }
 }
 
@@ -109,8 +113,9 @@ void checkMaterial(const Material& material) {
   const MaterialMap::Range held = material.friction.static_ratio.range();
   const MaterialMap::Range slides = material.friction.kinetic_ratio.range();
   if (slides.least > held.least || slides.most > held.most) {
-    throw inputError("scene.parameter", "the kinetic friction of " + of + " exceeds the static",
-                     "what slides is held less than what sticks");
+    throw inputError("scene.parameter",
+                     "the kinetic friction of " + of + " is more than its static one",
+                     "lower the kinetic friction, or raise the static one");
   }
   checkTexture(material);
   checkComposite(material);

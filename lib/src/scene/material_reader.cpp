@@ -17,8 +17,7 @@ Texture readTexture(const MapReader& reader) {
     throw reader.errorAt("amplitude", "scene.range",
                          "'amplitude' must not be more than 'wavelength' / 2 pi, here " +
                              inUnitOf(reader.loader(), highest),
-                         "steeper bumps push harder than the wall's own stiffness; make them lower "
-                         "or longer");
+                         "steeper bumps would be stiffer than the wall; make them lower or longer");
   }
   return {amplitude, wavelength};
 }

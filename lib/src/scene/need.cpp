@@ -106,7 +106,7 @@ class Needs {
     if (!needed_.isBounded()) return;
     for (std::size_t i = 1; i < names_.size(); ++i) {
       if (canBeLeftOut(i) && names_[i] != scene_.start_region && !overlap(*boxOf(i), needed_)) {
-        reasons_[i - 1] = "beyond the device's workspace";
+        reasons_[i - 1] = "it lies outside the device's workspace";
       }
     }
   }
@@ -206,7 +206,7 @@ class Needs {
       const FieldPtr& field = scene_.layers[other - 1].inside->get(needed_, progress_);
       int looks = kMostLooks;
       if (isInside(*field, box, 3 * kMostHalvings, looks)) {
-        return "all around it is " + names_[other] + ", which cannot be entered";
+        return "it lies within " + names_[other] + ", which cannot be entered";
       }
     }
     return {};

@@ -59,7 +59,7 @@ void RegionReader::requireOpeningForce(const MapReader& reader, std::string_view
   if (mostForceOf(port) > 0.0) return;
   throw reader.errorAt(
       key, "scene.no_opening_force",
-      inQuotes(key) + " is about a port that opens by force, and this one is always open",
+      inQuotes(key) + " applies to ports that open by force, and this one is always open",
       "give it the force: opens_at: 2 N");
 }
 
@@ -74,7 +74,7 @@ void RegionReader::readPuncture(const MapReader& reader, PortDescription& port) 
     port.reopens_at = readParameter(hole, "reopens_at");
     if (port.reopens_at.range().least > mostForceOf(port)) {
       throw hole.errorAt("reopens_at", "scene.range",
-                         "'reopens_at' is more than what opens the port where it has no hole",
+                         "'reopens_at' is more than the force that opens the port without a hole",
                          "make it less than opens_at and back");
     }
   }
@@ -92,7 +92,7 @@ std::string RegionReader::readSheetName(const MapReader& reader) const {
   for (const std::string& key : reader.words("sheet").excludes) {
     if (!reader.has(key)) continue;
     throw reader.errorAt(key, "scene.one_of",
-                         inQuotes(key) + " and 'sheet' do not go together in a port",
+                         "a port has either " + inQuotes(key) + " or 'sheet', not both",
                          "a port in a sheet has the same region on both sides; say where in the "
                          "sheet it is with 'where'");
   }

@@ -26,7 +26,7 @@ Parameter readMap(const SceneLoader& loader, const Node& node, const KeyWords& k
   const auto refuse = [&](const std::string& message, const char* hint) {
     return loader.document().error(node.mark, "scene.range", message, hint);
   };
-  constexpr const char* kMend = "mend the values that the map is made from";
+  constexpr const char* kMend = "correct the values from which the map is made";
   if (is_signed && !(std::isfinite(range.least) && std::isfinite(range.most))) {
     throw refuse("a component of " + what + " is not finite everywhere", kMend);
   }

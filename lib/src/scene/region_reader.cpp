@@ -87,7 +87,7 @@ void RegionReader::readSurface(const MapReader& reader, LayerDescription& layer)
       throw document.error(
           entry.key_mark, "scene.kind",
           "the layer has both " + inQuotes(surface->key) + " and " + inQuotes(entry.key),
-          "a layer comes from one of them");
+          "give only one of them");
     }
     surface = &entry;
   }
@@ -110,7 +110,7 @@ void RegionReader::readSurface(const MapReader& reader, LayerDescription& layer)
   values.finish();
   if (!made.inside) {
     throw document.error(surface->key_mark, "scene.no_reader",
-                         "nothing came of this " + inQuotes(surface->key));
+                         "this " + inQuotes(surface->key) + " could not be made");
   }
   layer.inside = std::move(made.inside);
   layer.label_group = std::move(made.label_group);
@@ -141,7 +141,7 @@ void RegionReader::requireRegion(const Node& node, bool globs) const {
   const std::string& name = node.text;
   if (isGlob(name)) {
     if (!globs) {
-      throw loader_.document().error(node.mark, "scene.kind", "one region is wanted, not a glob",
+      throw loader_.document().error(node.mark, "scene.kind", "name one region here, not a pattern",
                                      "regions: " + listed(regions));
     }
     const bool matches = std::any_of(regions.begin(), regions.end(),
@@ -198,8 +198,9 @@ void RegionReader::readWalls(const std::vector<MapReader>& walls) {
       const std::size_t side = readChoice(document, *from, "'felt_from'", {between.a, between.b});
       wall.felt_from = side == 0 ? between.a : between.b;
       if (wall.wall.absent) {
-        throw document.error(from->mark, "scene.kind", "an absent wall is absent from both sides",
-                             "a port with a direction lets through one way");
+        throw document.error(from->mark, "scene.kind",
+                             "an absent wall cannot be limited to one side",
+                             "for one way only, use a wall with a port that has a direction");
       }
     }
     scene_.walls.push_back(std::move(wall));

@@ -56,10 +56,10 @@ void FileLoader::readVersion(const Node& root) const {
     refuseEmpty(document_, entry);
     const double version = readNumber(document_, entry.value, "'palpate'");
     if (entry.value.text != "1") {
-      throw document_.error(
-          entry.value.mark, "scene.version",
-          "this is scene format " + inQuotes(entry.value.text) + ", and this program reads 1",
-          version > 1.0 ? "a newer program may read it" : "write palpate: 1");
+      throw document_.error(entry.value.mark, "scene.version",
+                            "the file is in scene format " + inQuotes(entry.value.text) +
+                                "; this program reads format 1",
+                            version > 1.0 ? "a newer program may read it" : "write palpate: 1");
     }
     return;
   }

@@ -76,7 +76,7 @@ Make quadricOf(Reader r) {
     coefficient = number * scale;
     if (!std::isfinite(coefficient)) {
       throw r.errorAt(key, "scene.range", inQuotes(key) + " is too large",
-                      "only the ratios of the coefficients count; make all of them smaller");
+                      "divide all coefficients by the same number: the surface stays the same");
     }
   };
   for (const auto& [key, member] : {std::pair{"xx", &Q::xx},
@@ -119,8 +119,8 @@ Make metaballsOf(Reader r) {
   }
   if (!(most > iso)) {
     throw r.errorAt("iso", "scene.range",
-                    "'iso' is never reached: the strengths above 0 do not add up to more",
-                    "a ball's influence is its strength at its center; with one ball of "
+                    "'iso' is never reached: the positive strengths add up to no more than it",
+                    "at its center a ball's influence is its strength; for balls of "
                     "strength 1, iso: 0.5 is usual");
   }
   return later(metaballs, balls, kFallOffs[r.choice("fall_off")], iso);

@@ -78,7 +78,7 @@ std::string acceptText(std::string_view text, Document& document) {
     const std::size_t length = utf8Length(text, at);
     if (length == 0) {
       throw unprintable(document, mark, "document.encoding",
-                        "not UTF-8: the byte " + hexadecimal(c) + " begins no character");
+                        "not UTF-8: byte " + hexadecimal(c) + " cannot begin a character");
     }
     if ((static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7F) {
       throw unprintable(document, mark, "document.binary",

@@ -74,7 +74,7 @@ std::pair<Parameter, Parameter> readFriction(const MapReader& reader) {
   const Parameter slides = readParameter(reader, "kinetic", held);
   if (slides.range().most > held.range().most || slides.range().least > held.range().least) {
     throw reader.errorAt("kinetic", "scene.range", "'kinetic' must not be more than 'static'",
-                         "what slides is held less than what sticks");
+                         "lower 'kinetic', or raise 'static'");
   }
   return {held, slides};
 }

@@ -29,7 +29,7 @@ std::string shown(const Node& node) {
 Error wrongKind(const Document& document, const Node& node, const std::string& what,
                 std::string_view wanted, std::string hint = {}) {
   return document.error(node.mark, node.kind == Node::Kind::kNull ? "scene.empty" : "scene.kind",
-                        what + " wants " + std::string(wanted) + ", not " + shown(node),
+                        what + " must be " + std::string(wanted) + ", not " + shown(node),
                         std::move(hint));
 }
 
@@ -71,7 +71,7 @@ Error notANumber(const Document& document, const Node& node, const std::string& 
   std::string hint = numberHint(node.text);
   if (hint.empty()) hint = std::move(fallback_hint);
   return document.error(node.mark, "scene.number",
-                        what + " wants " + std::string(wanted) + ", not " + inQuotes(node.text),
+                        what + " must be " + std::string(wanted) + ", not " + inQuotes(node.text),
                         std::move(hint));
 }
 
@@ -86,7 +86,7 @@ Error badUnit(const Document& document, const Node& node, Dimension dimension,
   if (quantity.status == Quantity::Status::kWrongDimension) {
     return document.error(
         node.mark, "scene.unit",
-        what + " wants " + wanted + ", and " + inQuotes(quantity.unit) + " is not a unit of that",
+        what + " must be " + wanted + "; " + inQuotes(quantity.unit) + " is not a unit of it",
         "units: " + help);
   }
   return document.error(node.mark, "scene.unit",
@@ -108,7 +108,7 @@ std::string readText(const Document& document, const Node& node, const std::stri
     throw document.error(node.mark, "scene.kind", what + " has a control character in it");
   }
   if (!node.quoted && (parseNumber(node.text) || node.text == "true" || node.text == "false")) {
-    throw document.error(node.mark, "scene.kind", what + " wants a text, not " + shown(node),
+    throw document.error(node.mark, "scene.kind", what + " must be a text, not " + shown(node),
                          "quote it: \"" + node.text + "\"");
   }
   return node.text;
@@ -118,7 +118,7 @@ double readNumber(const Document& document, const Node& node, const std::string&
   if (node.kind != Node::Kind::kScalar) throw wrongKind(document, node, what, "a number");
   const std::optional<double> number = parseNumber(node.text);
   if (node.quoted) {
-    throw document.error(node.mark, "scene.kind", what + " wants a number, not a quoted text",
+    throw document.error(node.mark, "scene.kind", what + " must be a number, not a quoted text",
                          number ? "remove the quotes: " + node.text : std::string());
   }
   if (!number) {
@@ -157,9 +157,9 @@ double readLength(const SceneLoader& loader, const Node& node, const std::string
   const Quantity quantity = parseQuantity(node.text, Dimension::kLength);
   if (quantity.status == Quantity::Status::kOk) return quantity.si;
   if (number) {
-    throw document.error(node.mark, "scene.kind", what + " wants a length, not quoted digits",
+    throw document.error(node.mark, "scene.kind", what + " must be a length, not digits in quotes",
                          "remove the quotes: " + node.text + " (in " + loader.lengthUnit() +
-                             "), or write the unit in them");
+                             "); or write the unit inside them");
   }
   if (quantity.status == Quantity::Status::kNotANumber) {
     throw notANumber(document, node, what, "a length",
@@ -185,7 +185,7 @@ const std::vector<Node>& readList(const Document& document, const Node& node,
                                          : std::to_string(least) + " to " + std::to_string(most);
     throw document.error(
         node.mark, "scene.length",
-        what + " wants a list of " + wanted + ", not of " + std::to_string(node.items.size()));
+        what + " must be a list of " + wanted + ", not of " + std::to_string(node.items.size()));
   }
   for (const Node& item : node.items) {
     if (item.kind == Node::Kind::kNull) {
@@ -219,7 +219,7 @@ Error unknownName(const Document& document, Mark mark, const std::string& kind,
 }
 
 Error noReader(const Document& document, Mark mark, const std::string& what) {
-  return document.error(mark, "scene.no_reader", "this program reads no " + what,
+  return document.error(mark, "scene.no_reader", "this program cannot read " + what,
                         "palpate::vdb reads them, and is not part of this program");
 }
 

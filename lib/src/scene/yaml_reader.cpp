@@ -27,9 +27,9 @@ class TreeBuilder final : public YAML::EventHandler {
           mark.pos >= 0 && text_.compare(static_cast<std::size_t>(mark.pos), 3, "---") == 0;
       throw document_.error(
           markOf(mark), "document.several",
-          marker ? "a second YAML document" : "this belongs to nothing before it",
+          marker ? "a second YAML document" : "this line does not continue anything before it",
           marker ? "one file is one document; remove the '---'"
-                 : "is it indented like the lines before it, and inside their brackets?");
+                 : "indent it like the lines before it, and keep it inside their brackets");
     }
     has_document_ = true;
   }
@@ -87,7 +87,8 @@ class TreeBuilder final : public YAML::EventHandler {
       hint = "quote globs: \"name?\"";
     } else if (exception.msg == YAML::ErrorMsg::MAP_VALUE) {
       hint =
-          "is a line before this not closed, or indented otherwise? a text with ': ' needs quotes";
+          "a bracket or quote before this line may be open, or the line indented otherwise; a text "
+          "with ': ' needs quotes";
     } else if (exception.msg == YAML::ErrorMsg::END_OF_MAP_FLOW) {
       hint = "a '{' is not closed, or a ',' is missing";
     } else if (exception.msg == YAML::ErrorMsg::END_OF_SEQ_FLOW) {

@@ -33,15 +33,15 @@ const double kNan = std::nan("");
 TEST(Parameters, LengthsArePositiveAndPlausible) {
   for (const double bad : {0.0, -0.0, -0.001, kNan, kInfinity, 1e-13, 1e13}) {
     expectRefused([=] { return sphere(kOrigin, bad); }, "field.bad_length",
-                  {"sphere", "radius", "permitted"});
+                  {"sphere", "radius", "must be from"});
     expectRefused([=] { return box(kOrigin, Vec3(1, bad, 1)); }, "field.bad_length",
-                  {"box", "size", "permitted"});
+                  {"box", "size", "must be from"});
     expectRefused([=] { return cylinder(kOrigin, Vec3(0, 0, 1), bad, 1.0); }, "field.bad_length",
-                  {"cylinder", "radius", "permitted"});
+                  {"cylinder", "radius", "must be from"});
     expectRefused([=] { return cylinder(kOrigin, Vec3(0, 0, 1), 1.0, bad); }, "field.bad_length",
-                  {"cylinder", "height", "permitted"});
+                  {"cylinder", "height", "must be from"});
     expectRefused([=] { return ellipsoid(kOrigin, Vec3(bad, 1, 1)); }, "field.bad_length",
-                  {"ellipsoid", "radii", "permitted"});
+                  {"ellipsoid", "radii", "must be from"});
   }
   expectRefused([] { return sphere(kOrigin, -0.25); }, "field.bad_length", {"-0.25"});
 }

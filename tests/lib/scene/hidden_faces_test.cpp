@@ -45,7 +45,7 @@ TEST(HiddenFaces, AreExplained) {
     EXPECT_EQ(problem.code, "scene.port_face");
     EXPECT_EQ(problem.line, 9);
     EXPECT_NE(
-        problem.hint.find("'" + std::string(c.on) + "' went into the " + c.kind + " in line 7"),
+        problem.hint.find("'" + std::string(c.on) + "' is part of the " + c.kind + " in line 7"),
         std::string::npos);
     EXPECT_NE(problem.hint.find("where"), std::string::npos);
   }

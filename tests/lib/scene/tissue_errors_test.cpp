@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
                "'in'", ""),
         marked("ShaftKinetic",
                material("shaft: {stiffness: 1e5 N/m^2, in: {static: 5 N/m, kinetic: @6 N/m}}"),
-               "scene.range", "'kinetic'", "sticks"),
+               "scene.range", "'kinetic'", "raise 'static'"),
         marked("ShaftSlip",
                material("shaft: {stiffness: 1e5 N/m^2, in: {static: 5 N/m, @dampin: 1 N/m}}"),
                "scene.unknown_key", "'dampin'", "'damping'"),

@@ -131,7 +131,7 @@ Report runStabilityBench(const BenchOptions& options, const GeneralOptions& gene
   }
   const Machine machine = thisMachine();
   if (!machine.optimized) {
-    console.warn("this is a " + machine.build_type + " build: its times say nothing");
+    console.warn("this is a " + machine.build_type + " build: its times are not valid");
   }
 
   Runner runner(console.progress());

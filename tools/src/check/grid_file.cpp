@@ -28,7 +28,7 @@ void findVoxels(const vdb::GridCheck& check, const LengthUnit& unit, GridVerdict
                                     ", one at " + placeText(defect.place, unit),
                                 defect.voxels, defect.place});
   };
-  add("grid.not_finite", check.not_finite, "with no number");
+  add("grid.not_finite", check.not_finite, "with values that are not finite numbers");
   add("grid.sign_break", check.sign_breaks,
       "where inside and outside meet without a band in between: the inside is not marked as such "
       "(palpate convert FILE.vdb -o OTHER.vdb marks it), or the grid was cut off");
@@ -71,10 +71,11 @@ Json certificateJson(const vdb::BandCertificate& c) {
 }
 
 std::string certificateText(const vdb::BandCertificate& c, const LengthUnit& unit) {
-  std::string text = "    certified " + formatNumber(c.within / unit.meters, 3) + " " + unit.name +
-                     " to each side of the surface answer, no slope is above " +
-                     formatNumber(c.steepest, 3) + ", off by at most " +
-                     formatNumber(c.off / unit.meters, 2) + " " + unit.name + " where smooth\n";
+  std::string text = "    certified: values and normals within " +
+                     formatNumber(c.within / unit.meters, 3) + " " + unit.name +
+                     " of the surface; no slope above " + formatNumber(c.steepest, 3) +
+                     "; surface off by at most " + formatNumber(c.off / unit.meters, 2) + " " +
+                     unit.name + " where it is smooth\n";
   if (c.rough > 0.0) {
     text += "    " + formatNumber(100.0 * c.rough, 2) +
             " % of the surface has edges, or bends within a voxel, one at " +

@@ -66,7 +66,7 @@ void findTriangles(Checked& c) {
   };
   if (d.turned_triangles > 0) {
     c.findings.push_back({"mesh.turned",
-                          triangles(d.turned_triangles) + " turned against what is around",
+                          triangles(d.turned_triangles) + " wound against their neighbors",
                           d.turned_triangles});
   }
   if (d.inside_out_parts > 0) {
@@ -76,9 +76,10 @@ void findTriangles(Checked& c) {
                           d.inside_out_parts});
   }
   if (d.doubled_triangles > 0) {
-    c.findings.push_back({"mesh.doubled",
-                          triangles(d.doubled_triangles) + " with the corners of another",
-                          d.doubled_triangles});
+    c.findings.push_back(
+        {"mesh.doubled",
+         triangles(d.doubled_triangles) + " with the same corners as another triangle",
+         d.doubled_triangles});
   }
   const std::size_t degenerate = d.degenerate_triangles + c.mesh.dropped_triangles;
   if (degenerate > 0) {

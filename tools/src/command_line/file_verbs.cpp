@@ -295,7 +295,7 @@ fish ~/.config/fish/completions/palpate.fish.)",
           [](const Invocation& i) {
             const auto& o = chosen<HelpOptions>(i);
             if (o.verb == "scene") return;
-            if (!o.key.empty()) throw usageError("'" + o.key + "' is one argument too many", "");
+            if (!o.key.empty()) throw usageError("unexpected argument '" + o.key + "'", "");
             if (o.schema) throw usageError("--schema is about scene files", "palpate help scene");
           }};
 }

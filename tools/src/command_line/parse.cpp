@@ -24,7 +24,7 @@ Error unknownArgument(const CLI::App& app, const Verb& verb, const std::string& 
     return usageError("'" + argument + "' is not a point", "a point is three numbers: X,Y,Z");
   }
   if (argument.empty() || argument[0] != '-') {
-    return usageError("'" + argument + "' is one argument too many", more);
+    return usageError("unexpected argument '" + argument + "'", more);
   }
   std::vector<std::string> names = {"--help"};
   for (const CLI::Option* option : app.get_options()) {
@@ -113,7 +113,8 @@ Invocation parseCommandLine(const std::vector<std::string>& arguments) {
   while (at < arguments.size() && arguments[at].starts_with("--") && arguments[at] != "--help" &&
          arguments[at] != "--version") {
     if (arguments[at] != "--json" && arguments[at] != "--quiet" && arguments[at] != "--force") {
-      throw usageError("'" + arguments[at] + "' is not a general option", "the verb comes first");
+      throw usageError("'" + arguments[at] + "' cannot stand before the verb",
+                       "put the verb first: palpate VERB " + arguments[at]);
     }
     rest.push_back(arguments[at++]);
   }

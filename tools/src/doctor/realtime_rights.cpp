@@ -104,7 +104,7 @@ Finding governor() {
 Finding cores() {
   const unsigned count = std::thread::hardware_concurrency();
   return {"Cores", std::to_string(count), count >= 2,
-          count >= 2 ? "" : "a loop that spins leaves nothing for the thread that watches it"};
+          count >= 2 ? "" : "with one core, the servo loop leaves no time for its watchdog thread"};
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ void addSources(const Scene& scene, const LoadedScene& loaded, Report& report) {
       saving ? Json{{"memory_bytes", saving->bytes}, {"seconds", saving->seconds}} : Json();
   if (saving) {
     report.text +=
-        "\nSaved by what was left out, estimated from the grids above by the size of its box: " +
+        "\nSaved by leaving these out, estimated from their boxes and the grids above: " +
         formatBytes(saving->bytes) + ", " + formatSeconds(saving->seconds) + "\n";
   }
 }
@@ -123,7 +123,7 @@ void addMeasured(const std::string& file, Console& console, Report& report) {
   Table costs({"measured", "grids in the loop", "read and made in"});
   costs.add({"all of it", formatBytes(whole.bytes), formatSeconds(whole.seconds)});
   costs.add({"what is needed", formatBytes(needed.bytes), formatSeconds(needed.seconds)});
-  report.text += "\nTo touch it, against all of it\n" + costs.text("  ");
+  report.text += "\nWhat a touch needs, compared with all of it\n" + costs.text("  ");
 }
 
 }  // namespace palpate::tools

@@ -92,8 +92,8 @@ std::string whyUnreachable(const Scene& scene, RegionId region) {
   if (!touched) return "it touches no other region";
   if (closed.empty()) return "no port leads into it";
   return "its ports (" + closed +
-         ") start in regions that cannot be reached either, or what they come after is never "
-         "passed when they could be";
+         ") start in regions that cannot be reached either, or their `after` is never fulfilled "
+         "where they start";
 }
 
 std::string contentText(const Material& content) {
@@ -102,9 +102,9 @@ std::string contentText(const Material& content) {
     if (parameter.range().most > 0.0) text += what + formatParameter(parameter) + unit;
   };
   add(content.lattice.force, ", lattice ", " N");
-  add(content.cutting, ", cut by ", " N");
-  add(content.shaft.in.kinetic_force, ", holds a shaft by ", " N/m");
-  add(content.shaft.lateral.stiffness, ", sideways by ", " N/m^2");
+  add(content.cutting, ", cutting force ", " N");
+  add(content.shaft.in.kinetic_force, ", shaft friction ", " N/m");
+  add(content.shaft.lateral.stiffness, ", sideways shaft stiffness ", " N/m^2");
   return text + ")";
 }
 

@@ -42,8 +42,8 @@ class BorderReader {
     for (std::size_t a = 0; a + 1 < kTissueClasses; ++a) {
       for (std::size_t b = a; b < kTissueClasses; ++b) {
         if (is_given_.at(a * kTissueClasses + b)) continue;
-        throw loader_.wrong(
-            list.mark, std::string("nothing is said of ") + kNames.at(a) + " and " + kNames.at(b));
+        throw loader_.wrong(list.mark, std::string("the table has no entry for ") + kNames.at(a) +
+                                           " and " + kNames.at(b));
       }
     }
     return table_;
@@ -57,7 +57,7 @@ class BorderReader {
     const auto first = classNamed(names.front());
     const auto second = names.size() == 2 ? classNamed(names.back()) : std::nullopt;
     if (!first || !second) {
-      throw loader_.wrong(pair.mark, "'between' wants two classes",
+      throw loader_.wrong(pair.mark, "'between' must be a list of two classes",
                           "rigid, solid, membrane, fluid, gas, outside");
     }
     Border border;
@@ -69,7 +69,7 @@ class BorderReader {
     } else if (wall == "stiffer") {
       border.wall = Border::Wall::kStiffer;
     } else if (wall != "none") {
-      throw loader_.wrong(item.mark, "'wall' is one of the two, stiffer or none");
+      throw loader_.wrong(item.mark, "'wall' must be one of the two classes, stiffer or none");
     }
     const std::string port = reader.textOr("port", "none");
     if (port != "none" && port != "rupture") {
@@ -79,7 +79,7 @@ class BorderReader {
     border.lining = reader.boolOr("lining", false);
     reader.finish();
     if (is_given_.at(placeOf(*first, *second))) {
-      throw loader_.wrong(item.mark, "these two were there before");
+      throw loader_.wrong(item.mark, "the table has an entry for these two already");
     }
     table_.borders_.at(placeOf(*first, *second)) = border;
     is_given_.at(placeOf(*first, *second)) = true;

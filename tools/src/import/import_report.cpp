@@ -182,7 +182,7 @@ class ImportReport {
     for (const OpenAir& air : scan_.open_air) {
       json.push_back({{"name", air.name}, {"labels", air.labels}, {"volume_m3", air.volume}});
       report_.text += air.name + " (" + cubicCentimeters(air.volume) +
-                      " cm^3) is air that reaches the image's border: it is outside\n";
+                      " cm^3) is air that reaches the image's border, so it belongs to outside\n";
     }
     report_.json["outside"] = std::move(json);
   }
@@ -222,8 +222,8 @@ class ImportReport {
     if (count == 0) return;
     report_.text += formatCount(count) +
                     " islands (pieces of less than a tenth of their region's "
-                    "largest) and cavities are left" +
-                    (options_.min_island ? "" : "; --min-island changes small ones") +
+                    "largest) and cavities remain" +
+                    (options_.min_island ? "" : "; --min-island VOXELS removes small ones") +
                     ". Voxels of each:\n" + text;
     if (count > kMostTold) report_.text += "  and " + formatCount(count - kMostTold) + " more\n";
   }

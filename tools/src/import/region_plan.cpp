@@ -48,13 +48,13 @@ std::vector<int> labelsOf(const std::string& entry, const ImportOptions& options
     wanted = vdb::resolveLabels({entry}, names, options.names);
     if (wanted == std::vector<int>{0}) {
       throw inputError("labels.background", "label 0 means 'not labeled', so it cannot be a region",
-                       "--body or --skin makes a region of what in the body is not labeled",
+                       "--body or --skin makes a region of the unlabeled part of the body",
                        options.scan());
     }
     std::erase_if(wanted, [&](int label) { return label == 0 || !counts.contains(label); });
   }
   if (wanted.empty()) {
-    throw inputError("labels.no_voxels", "no voxel of the image is of label `" + entry + "`",
+    throw inputError("labels.no_voxels", "no voxel of the image has the label `" + entry + "`",
                      "the image holds " + listOf(counts), options.scan());
   }
   return wanted;
@@ -107,9 +107,9 @@ class Planner {
     setTissues();
     if (names_.empty() && plan_.regions.size() > joined && !plan_.regions.back().is_known) {
       plan_.notes.push_back(
-          "the labels have no names, so that nothing tells their tissues: they are taken for " +
+          "the labels have no names, so their tissues are not known: they are taken for " +
           plan_.regions.back().tissue->name +
-          "; --names gives them names, --codes says whose numbers they are");
+          "; give names (--names FILE), or say whose numbers they are (--codes freesurfer)");
     }
     const auto rank = [&](const PlannedRegion& region) {
       const Tissue& tissue = *region.tissue;

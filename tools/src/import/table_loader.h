@@ -34,7 +34,7 @@ class TableLoader final : public SceneLoader {
   /// @throws Error if `node` is not a map.
   [[nodiscard]] const std::vector<Node::Entry>& entries(const Node& node, const char* of) const {
     if (node.kind != Node::Kind::kMap) {
-      throw wrong(node.mark, std::string("'") + of + "' wants a map");
+      throw wrong(node.mark, std::string("'") + of + "' must be a map");
     }
     return node.entries;
   }
@@ -46,7 +46,7 @@ class TableLoader final : public SceneLoader {
   }
   [[nodiscard]] std::vector<std::string> texts(const Node& node, const char* of) const {
     if (node.kind != Node::Kind::kSequence || node.items.empty()) {
-      throw wrong(node.mark, std::string("'") + of + "' wants a list");
+      throw wrong(node.mark, std::string("'") + of + "' must be a list");
     }
     std::vector<std::string> result;
     for (const Node& item : node.items) result.push_back(text(item, of));

@@ -64,7 +64,7 @@ class Chooser {
           suggest(rules_[n].text.substr(0, rules_[n].text.rfind('=')), candidates);
       throw Error(
           ErrorKind::kUsage,
-          {"usage.import", "--tissue " + rules_[n].text + ": no region is called that",
+          {"usage.import", "--tissue " + rules_[n].text + ": there is no such region",
            close.empty() ? "palpate info SCAN lists the labels" : "did you mean '" + close + "'?"});
     }
     return choices;
@@ -190,7 +190,7 @@ class Chooser {
       if (!by_name.tissue.empty() && by_name.tissue != by_code.tissue) {
         notes_.push_back("'" + region.name + "' is " + by_name.tissue + " by its name (" +
                          by_name.why + ") and " + by_code.tissue + " by its " + by_code.why +
-                         "; the code counts, --tissue says otherwise");
+                         ": the code decides; --tissue overrides it");
       }
       return *choice;
     }

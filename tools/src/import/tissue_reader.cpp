@@ -110,7 +110,7 @@ class TableReader {
     table.unknown = root.textOr("unknown", "");
     const Node& tissues = root.require("tissues");
     if (tissues.kind != Node::Kind::kMap || tissues.entries.empty()) {
-      throw document.error(tissues.mark, "tissues.kind", "'tissues' wants a map of tissues",
+      throw document.error(tissues.mark, "tissues.kind", "'tissues' must be a map of tissues",
                            "write tissues: {muscle: {labels: [\"*muscle*\"], ...}}");
     }
     root.finish();
@@ -131,8 +131,9 @@ class TableReader {
     const bool may_be_zero = kind == NumberKind::kRatio || kind == NumberKind::kDamping ||
                              kind == NumberKind::kForce || kind == NumberKind::kForcePerLength;
     if (!parsed || *parsed < 0.0 || (*parsed == 0.0 && !may_be_zero)) {
-      throw document.error(value.mark, "tissues.value",
-                           "'" + what + "' wants " + unitsOf(kind) + ", not '" + value.text + "'");
+      throw document.error(
+          value.mark, "tissues.value",
+          "'" + what + "' must be " + unitsOf(kind) + ", not '" + value.text + "'");
     }
     SourcedNumber result;
     readSource(reader, result);
@@ -152,7 +153,7 @@ class TableReader {
                             "rising value, and the stiffness there, more than 0");
     };
     if (list.kind != Node::Kind::kSequence || list.items.empty()) {
-      throw wrong(list.mark, "'stiffness_of_ct' wants a list of points");
+      throw wrong(list.mark, "'stiffness_of_ct' must be a list of points");
     }
     SourcedTransfer result;
     for (const Node& item : list.items) {
@@ -163,7 +164,7 @@ class TableReader {
       const std::optional<double> from = parseNumber(item.items[0].text);
       const std::optional<double> to = valueOf(item.items[1].text, NumberKind::kStiffness);
       if (!from) {
-        throw wrong(item.items[0].mark, "'" + item.items[0].text + "' is no CT number");
+        throw wrong(item.items[0].mark, "'" + item.items[0].text + "' is not a CT number");
       }
       if (!to || !(*to > 0.0)) {
         throw wrong(item.items[1].mark, "'" + item.items[1].text + "' is not a stiffness above 0");
@@ -258,7 +259,9 @@ class TableReader {
       throw refuse("has 'opens_at': nothing gets into what is rigid");
     }
     if (is_flowing && (tissue.hasWall() || tissue.opens_at || tissue.cutting || tissue.shaft)) {
-      throw refuse("has a wall or what cuts it; it may have viscosity, and a lining");
+      throw refuse(
+          "cannot have a stiffness, opens_at, cutting or shaft; it may have viscosity and a "
+          "lining");
     }
     if (tissue.kind == TissueClass::kGas && tissue.viscosity) {
       throw refuse("has viscosity: nothing is felt in a gas");
@@ -307,9 +310,10 @@ class TableReader {
                            "it is from 0 to 0.5");
     }
     if ((tissue.back || tissue.reopens) && !tissue.opens_at) {
-      throw document.error(mark, "tissues.back",
-                           "'" + tissue.name + "' has 'back' or 'reopens', but nothing gets in",
-                           "give opens_at as well");
+      throw document.error(
+          mark, "tissues.back",
+          "'" + tissue.name + "' has 'back' or 'reopens' but no 'opens_at', so it never opens",
+          "give opens_at as well");
     }
     if (tissue.shaft && !has_spring_) {
       throw document.error(mark, "tissues.shaft",

@@ -99,8 +99,8 @@ class Depths {
       }
     }
     if (last[0] < 0) {
-      throw inputError("import.target", "no voxel of the target is left",
-                       "--min-island changed them all: give a smaller one", image_.source);
+      throw inputError("import.target", "--min-island has removed all voxels of the target",
+                       "give a smaller number", image_.source);
     }
     for (std::size_t a = 0; a < 3; ++a)
       size_[a] = static_cast<std::size_t>(last[a] - first_[a]) + 3;

@@ -83,7 +83,7 @@ void checkContents(const fs::path& bundle) {
     std::error_code failed;
     if (!fs::is_regular_file(path, failed)) throw damaged("this file of the bundle is gone", path);
     if (hashOf(path) != file["hash"].get<std::string>()) {
-      throw damaged("this file of the bundle is not as it was packed", path);
+      throw damaged("this file of the bundle has changed since it was packed", path);
     }
   }
 }

@@ -113,7 +113,7 @@ std::string packedText(const Document& document, const NameInBundle& name) {
     const auto at = static_cast<std::size_t>(change.mark.column - 1);
     const std::size_t length = lengthOf(line, at, change);
     if (length == 0) {
-      throw document.error(change.mark, "pack.name", "this name is not written in one line",
+      throw document.error(change.mark, "pack.name", "this file name spans several lines",
                            "write it in one line, in quotes");
     }
     line.replace(at, length, sceneWord(change.now));

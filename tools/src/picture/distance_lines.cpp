@@ -20,11 +20,10 @@ constexpr double kFlat = 0.05;
 
 void DistanceLines::check(double pixel) const {
   if (spacing_ >= kFewest * pixel) return;
-  throw Error(
-      ErrorKind::kUsage,
-      {"usage.render", "--iso: lines so close together run into one another in this picture",
-       "at least " + formatNumber(kFewest * pixel / scene_.metersPerUnit(), 2) + " " +
-           scene_.lengthUnit()});
+  throw Error(ErrorKind::kUsage,
+              {"usage.render", "--iso: lines as close as that would merge in this picture",
+               "at least " + formatNumber(kFewest * pixel / scene_.metersPerUnit(), 2) + " " +
+                   scene_.lengthUnit()});
 }
 
 double DistanceLines::inkAt(const Vec3& p, const Vec3& normal, double pixel) const {

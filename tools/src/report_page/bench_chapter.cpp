@@ -223,7 +223,7 @@ void addBenchChapter(HtmlPage& page, const Json& bench, const std::string& file)
                     textAt(bench, "/machine/compiler") + ", " + textAt(bench, "/machine/build") +
                     " build"}});
   if (textAt(bench, "/machine/optimized") == "no") {
-    page.note("This was not an optimized build: its times say nothing.");
+    page.note("This build was not optimized: its times are not valid.");
   }
   const std::vector<Json> rows = objectsOf(valueAt(bench, "/results"));
   if (is_accuracy) {

@@ -111,7 +111,7 @@ TickSource readRecord(const std::string& file, const RecordAbout& about,
       throw inputError("record.about",
                        "tick " + std::to_string(row.tick) +
                            " is in a region, or passed a port, "
-                           "that has no name there",
+                           "that FILE.npy.json does not list",
                        "a record and its FILE.npy.json go together", aboutFile(file));
     }
     give(tick, sinks, source);

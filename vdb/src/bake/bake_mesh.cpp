@@ -63,10 +63,10 @@ Box3 boundsOf(const Solid& solid) {
 void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& columns,
                       const BakePlan& plan) {
   const std::string hint =
-      "mend it in a mesh editor; or choose whether the winding number or the flood decides";
+      "repair it in a mesh editor; or choose what decides: --sign winding or --sign flood";
   if (columns.doubt()) {
     throw inputError("mesh.ambiguous",
-                     "the mesh does not tell what is solid: at " +
+                     "it is not clear where the mesh is solid: at " +
                          eachInMillimeters(columns.doubt()->place * plan.voxel) + " " +
                          columns.doubt()->why,
                      hint, mesh.source);
@@ -77,12 +77,12 @@ void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& colum
     // should be.
     const std::optional<Vec3> crossing = crossings.in(pocket.box.grownBy(1.5));
     if (!crossing) continue;
-    throw inputError("mesh.ambiguous",
-                     "the mesh passes through itself at " +
-                         eachInMillimeters(*crossing * plan.voxel) + " and encloses a space of " +
-                         std::to_string(pocket.voxels) +
-                         " voxels there: inside by the flood, outside by the winding number",
-                     hint, mesh.source);
+    throw inputError(
+        "mesh.ambiguous",
+        "the mesh passes through itself at " + eachInMillimeters(*crossing * plan.voxel) +
+            " and encloses a space of " + std::to_string(pocket.voxels) +
+            " voxels there: inside by the flood from outside, outside by the winding number",
+        hint, mesh.source);
   }
 }
 
@@ -116,7 +116,7 @@ class MeshBaker {
     }
     if (half > 0.0 && options.mesh_sign == MeshSign::kUnsigned) {
       throw inputError("bake.shell_thickness",
-                       "a shell has an inside, and distances without sign have none",
+                       "a shell and unsigned distances cannot be combined: a shell has an inside",
                        "leave out one of the two");
     }
     if (half > 0.0) shell_ = static_cast<float>(half);

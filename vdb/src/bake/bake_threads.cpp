@@ -30,8 +30,8 @@ cpu_set_t processorsWithout(int processor) {
   CPU_CLR(static_cast<std::size_t>(processor), &set);
   if (CPU_COUNT(&set) == 0) {
     throw Error(ErrorKind::kUsage, {"bake.processor",
-                                    "there is no processor but " + std::to_string(processor) +
-                                        ", and nothing would be left to bake on",
+                                    "only processor " + std::to_string(processor) +
+                                        " may be used, so none would be left to bake on",
                                     "bake before the loop begins"});
   }
   return set;

@@ -117,13 +117,14 @@ void Columns::findRoles(const Solid& solid, const std::vector<Crossing>& crossin
     if (opposite && !whole && !doubt_) {
       doubt_ = {
           inner.place,
-          "a part of it is turned the other way than the one it overlaps, and may be a hollow "
-          "in it or inside out"};
+          "a part of it winds against the part that it overlaps, and may be a hollow in it or "
+          "inside out"};
     }
     if (whole && std::max(inner.minority, outer.minority) > 0.25 && !doubt_) {
-      doubt_ = {inner.place,
-                "a part of it lies in another, and its triangles are turned at random: it may be a "
-                "cavity or solid"};
+      doubt_ = {
+          inner.place,
+          "a part of it lies within another, and its triangles wind at random, so it may be a "
+          "cavity or solid"};
     }
   }
 }

@@ -40,9 +40,9 @@ Error emptySolidError(const Mesh& mesh, const Solid& solid, const BakePlan& plan
                       mesh.source);
   }
   if (thickness < 1e-6 * longest) {
-    return inputError(
-        "bake.empty", none + "the mesh encloses no volume, its sides lie in one another",
-        "make it a shell of some thickness (--shell 2mm, in a scene shell: 2 mm)", mesh.source);
+    return inputError("bake.empty", none + "the mesh encloses no volume: its sides coincide",
+                      "make it a shell of some thickness (--shell 2mm, in a scene shell: 2 mm)",
+                      mesh.source);
   }
   return inputError(
       "bake.empty",

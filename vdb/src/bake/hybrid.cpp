@@ -95,9 +95,10 @@ class HybridBaker {
       const auto part = std::find_if(parts_.begin(), parts_.end(),
                                      [&, &name = name](const Part& p) { return p.name == name; });
       if (part == parts_.end()) {
-        throw inputError("bake.other_field",
-                         "the grid " + grid.info().name + " is of a part that the field lacks",
-                         "it was made of another field: bake again");
+        throw inputError(
+            "bake.other_field",
+            "the grid " + grid.info().name + " belongs to a part that the field does not have",
+            "it was made from another field: bake again");
       }
       CertifyOptions certify;
       certify.sampler = options_.sampler;
@@ -224,7 +225,7 @@ class HybridBaker {
       out.reason = "stays analytic: it is exact";
     } else if (isFastEnough(part, domain, out)) {
       out.reason = "stays analytic: a query takes " + inNanoseconds(out.analytic_ns) +
-                   ", of a grid " + inNanoseconds(out.grid_ns);
+                   ", from a grid " + inNanoseconds(out.grid_ns);
     } else {
       makeGrid(part, out);
     }

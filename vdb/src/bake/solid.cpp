@@ -255,7 +255,7 @@ void requireSmallLids(const Mesh& mesh, const Solid& solid, const std::vector<Ho
         "the mesh is open: " + std::to_string(count) + (count == 1 ? " hole" : " holes") +
             ", the largest " + inMillimeters(glm::length(box.size()) * voxel) + " across at " +
             eachInMillimeters(middle * voxel) +
-            ", too large beside the surface to guess what closes it",
+            ", too large a share of the surface to be closed by a guess",
         "close it in a mesh editor; or let the winding number decide (--sign winding), which puts "
         "flat lids on all holes; or ask for a shell of some thickness (--shell 2mm)",
         mesh.source);

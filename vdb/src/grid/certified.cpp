@@ -117,9 +117,9 @@ class Certifier {
     }
     if (steps.near.by > kMostStep) {
       no("vdb.jump",
-         "has voxels by the surface that cannot both be distances, one at " +
+         "has neighboring voxels beside the surface that cannot both be distances, one at " +
              placeText(steps.near.at) + ": they differ by " + shortNumber(steps.near.by, 2) +
-             " voxels more than the way between them",
+             " voxels more than they are apart",
          "the file may be damaged: write it again; or make distances of its values, with "
          "OpenVDB's sdfToSdf or vdb_tool -normalize");
     }
@@ -129,7 +129,7 @@ class Certifier {
     } else if (std::max(steps.far.by, steps.near.by) > kSmallStep) {
       const bool by_far = steps.far.by > steps.near.by;
       rebuild("voxels differ by up to " + shortNumber(by_far ? steps.far.by : steps.near.by, 2) +
-              " voxels more than the way between them, one at " +
+              " voxels more than they are apart, one at " +
               placeText(by_far ? steps.far.at : steps.near.at));
     }
   }
@@ -146,8 +146,8 @@ class Certifier {
       }
     }
     if (tally.inside_voxels == 0) {
-      no("vdb.no_inside", "has no voxel of its band inside (negative)",
-         "nothing can be touched of it; distances without sign become a shell by offset");
+      no("vdb.no_inside", "has no negative voxel in its band, so it has no inside to touch",
+         "distances without sign become a shell by offset");
     }
     if (tally.sign_breaks.voxels > 0) {
       no("vdb.torn",
@@ -223,13 +223,13 @@ class Certifier {
     }
     if (c.steepest > kMostSteep) {
       no("vdb.uncertified",
-         "has samples by the surface that differ by up to " + shortNumber(c.steepest, 2) +
-             " times their distance; " + shortNumber(kMostSteep, 2) +
-             " is the most that a surface can be touched with",
+         "is too steep beside its surface: its values change by up to " +
+             shortNumber(c.steepest, 2) + " times the distance, and at most " +
+             shortNumber(kMostSteep, 2) + " times can be touched",
          "its values are not distances: write it again, or bake the shape that it is of");
     }
     no("vdb.uncertified",
-       "does not answer at points " + shortNumber(c.within / grid_.info().voxel_size, 2) +
+       "has no values at points only " + shortNumber(c.within / grid_.info().voxel_size, 2) +
            " voxels from its surface, one near " + placeText(unknown_at_),
        "its band is too narrow there, or has a hole: write it again with a half width of 6 voxels");
   }

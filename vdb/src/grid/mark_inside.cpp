@@ -29,8 +29,8 @@ std::uint64_t markInside(openvdb::FloatGrid& grid, double meters_per_unit,
     throw inputError(
         "vdb.torn",
         "the inside of grid '" + grid.getName() +
-            "' is not marked, and its band does not tell it: inside and outside meet "
-            "without a band in between at " +
+            "' is not marked and cannot be found: inside and outside meet without a band "
+            "in between at " +
             std::to_string(after.sign_breaks.voxels) + " voxels, one at " +
             inMillimeters(Vec3(p.x(), p.y(), p.z())),
         "the band has holes, or the grid was cut off: write it again with a whole band "

@@ -59,8 +59,8 @@ void requireLevelSet(const openvdb::GridBase& grid, UnknownClass unknown_class,
   }
   if (grid.getGridClass() != openvdb::GRID_LEVEL_SET) {
     throw inputError("vdb.class",
-                     name + " is of class '" + classOf(grid) +
-                         "', so nothing says that its values "
+                     name + " has the class '" + classOf(grid) +
+                         "', which does not say that its values "
                          "are signed distances",
                      says_nothing
                          ? "if they are, say so: --level-set, in a scene class: level_set; "

@@ -69,7 +69,8 @@ openvdb::GridBase::Ptr VdbArchive::readGridOf(std::istream& stream, const Entry&
     entry.grid->setTree(readGridOf(stream, parent)->baseTreePtr());
     return entry.grid;
   }
-  throw std::runtime_error("the grid whose voxels '" + entry.name() + "' shares is not there");
+  throw std::runtime_error("'" + entry.name() +
+                           "' shares the voxels of a grid that is not in the file");
 }
 
 openvdb::GridBase::Ptr VdbArchive::readTopologyOf(std::istream& stream, const Entry& entry) {

@@ -58,7 +58,7 @@ class VdbBytes {
   std::string takeText(std::uint32_t longest) {
     const auto length = take<std::uint32_t>();
     if (length > longest || length > left()) {
-      throw std::runtime_error("a text of " + std::to_string(length) + " bytes makes no sense");
+      throw std::runtime_error("a text of " + std::to_string(length) + " bytes is too long");
     }
     std::string text(length, '\0');
     take(text.data(), length);

@@ -136,7 +136,7 @@ class VdbWalk::Impl {
       const auto size = bytes_.take<std::uint32_t>();
       const auto fixed = fixedBytes(type);
       if ((fixed && *fixed != size) || size > kLongestText || size > bytes_.left()) {
-        fail("metadata of " + std::to_string(size) + " bytes where a " + type + " is");
+        fail("metadata of " + std::to_string(size) + " bytes for a value of type " + type);
       }
       const std::int64_t end = bytes_.position() + size;
       if (type == "__delayedload") delayedLoad(size, end);
@@ -182,10 +182,10 @@ class VdbWalk::Impl {
     }
     // Each grid must lie behind the one before; otherwise a damaged file could keep its reader here
     // for ever.
-    if (grid < bytes_.position() || end <= grid) fail("its table of contents makes no sense");
+    if (grid < bytes_.position() || end <= grid) fail("its table of contents is inconsistent");
     bytes_.seek(grid);
     gridHead();
-    if (end < bytes_.position()) fail("its table of contents makes no sense");
+    if (end < bytes_.position()) fail("its table of contents is inconsistent");
     bytes_.seek(end);
   }
 
@@ -223,7 +223,7 @@ class VdbWalk::Impl {
     for (std::uint32_t i = 0; i < tiles; ++i) {
       rootPlace();
       bytes_.skip(kind_.bytes);
-      if (bytes_.take<std::uint8_t>() > 1) fail("a tile that is neither active nor not");
+      if (bytes_.take<std::uint8_t>() > 1) fail("a tile with an invalid activity flag");
     }
     using Place = std::array<std::int32_t, 3>;
     std::optional<Place> last;
@@ -298,7 +298,7 @@ class VdbWalk::Impl {
     const auto packed = bytes_.take<std::int64_t>();
     if (packed <= 0) {
       // Not packed; OpenVDB reads that many bytes before it compares the count.
-      if (packed != -plain) fail("voxels that are not as many as their tree has");
+      if (packed != -plain) fail("a number of voxels that differs from that of its tree");
       return bytes_.skip(plain);
     }
     if (packed > bytes_.left()) throw std::ios_base::failure("the end of the file");
@@ -318,7 +318,7 @@ class VdbWalk::Impl {
     constexpr std::int64_t kPadded = 128;
     const bool fits = unpacked == plain || (plain < kPadded && unpacked == kPadded);
     if (!fits || whole != packed || block > std::max<std::int64_t>(unpacked, 1)) {
-      fail("packed voxels that are not as many as their tree has");
+      fail("a number of packed voxels that differs from that of its tree");
     }
   }
 
@@ -328,7 +328,7 @@ class VdbWalk::Impl {
   };
 
   void voxels(const Leaf& leaf) {
-    if (mask(512) != leaf.active) fail("voxels that are active in one list and not in the other");
+    if (mask(512) != leaf.active) fail("two lists of active voxels that differ");
     if (kind_.leaf == ValueKind::Leaf::kNumbers) return values(512, leaf.active);
     std::array<std::int32_t, 3> place{};
     bytes_.take(place.data(), sizeof place);

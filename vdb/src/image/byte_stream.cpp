@@ -154,7 +154,7 @@ std::uint64_t ByteStream::verifyEnd(std::uint64_t most) {
   if (broken_off_) {
     throw fail("truncated",
                std::string("the ") + (packing_ == Packing::kGzip ? "gzip" : "zlib") +
-                   " data break off before their end",
+                   " data are cut short",
                kFetchAgain);
   }
   return passed;

@@ -85,9 +85,10 @@ Contour contourOf(const DicomItem& item, const std::string& roi) {
   if (numbers.size() % 3 != 0 ||
       (is_counted && item.numbers(kPointCount, 1).front() != static_cast<double>(points))) {
     throw fail(item, "dicom.contours",
-               "a contour of '" + roi + "' is said to have " +
+               "a contour of '" + roi + "' claims " +
                    (is_counted ? item.text(kPointCount) : std::string("some")) +
-                   " points and has " + std::to_string(numbers.size()) + " numbers",
+                   " points but has " + std::to_string(numbers.size()) +
+                   " numbers (a point has three)",
                "fetch or write the file again");
   }
   Contour contour;
@@ -142,7 +143,7 @@ StructureSet readSet(const std::string& path) {
     const auto at = label_of.find(number);
     if (at == label_of.end()) {
       throw fail(item, "dicom.contours",
-                 "contours are of structure " + std::to_string(number) +
+                 "some contours belong to structure " + std::to_string(number) +
                      ", which the file does not describe",
                  "save the structure set again");
     }
@@ -167,7 +168,7 @@ StructureSet readSet(const std::string& path) {
   if (series != nullptr) out.series = series->text(kSeriesUid);
   if (others > 0) {
     out.notes.push_back(std::to_string(others) +
-                        " contours are points or open lines, and are passed over");
+                        " contours that are points or open lines were ignored");
   }
   return out;
 }
@@ -207,8 +208,8 @@ ContourGrid ownGrid(StructureSet& set) {
         if (std::abs(point.z - contour.front().z) <= 1e-2) continue;
         throw inputError("dicom.contours",
                          "the contours of '" + roi.name +
-                             "' do not lie across the body's axis, and the series that they were "
-                             "drawn on is not beside them",
+                             "' are not axial, and the series on which they were drawn is not in "
+                             "the folder",
                          "put the series' files into the folder of the structure set", set.path);
       }
     }
@@ -261,10 +262,10 @@ std::map<int, std::vector<std::vector<PixelPoint>>> polygonsOf(const Roi& roi,
       if (polygon.empty()) slice = static_cast<int>(std::lround(std::clamp(index.z, -1e6, 1e6)));
       if (!(std::abs(index.z - slice) <= kOnSlice)) {
         throw inputError("dicom.contours",
-                         "a contour of '" + roi.name + "' lies between two slices, at " +
-                             shortNumber(index.z, 5) + " from 0, near (" + shortNumber(point.x, 5) +
-                             ", " + shortNumber(point.y, 5) + ", " + shortNumber(point.z, 5) +
-                             ") mm (left, back, up)",
+                         "a contour of '" + roi.name + "' lies between two slices, at slice " +
+                             shortNumber(index.z, 5) + " (counted from 0), near (" +
+                             shortNumber(point.x, 5) + ", " + shortNumber(point.y, 5) + ", " +
+                             shortNumber(point.z, 5) + ") mm (left, back, up)",
                          "put the series that it was drawn on beside it", path);
       }
       polygon.push_back({index.x, index.y});

@@ -87,14 +87,14 @@ class Walker {
   void skip(std::uint32_t length, std::size_t end) {
     if (length > end - at_) {
       if (end == bytes_.size()) failShort();
-      failDamaged("an element is longer than what holds it,");
+      failDamaged("an element is longer than the sequence or item that holds it,");
     }
     at_ += length;
   }
 
   /// One element that ends before `end`.
   void element(std::size_t end, int depth) {
-    if (depth > kDeepest) failDamaged("sequences within too many others");
+    if (depth > kDeepest) failDamaged("sequences are nested too deeply,");
     const std::uint32_t tag = takeTag();
     if ((tag >> 16U) == 0xFFFE) failDamaged("an item outside of a sequence");
     std::string_view vr;
@@ -252,8 +252,8 @@ std::vector<int> DicomItem::shorts(std::uint32_t tag, std::size_t count) const {
   if (at->second.size() != 2 * count) {
     throw inputError(
         "dicom.value",
-        tagName(tag) + " is not of " +
-            (count == 1 ? "two bytes" : std::to_string(count) + " numbers of two bytes"),
+        tagName(tag) + " must hold " +
+            (count == 1 ? "two bytes" : std::to_string(count) + " numbers of two bytes each"),
         {}, path);
   }
   std::vector<int> out;

@@ -143,7 +143,7 @@ const DicomItem& requireGroup(const SegmentFile& file, std::size_t n, std::uint3
   if (group == nullptr || !group->has(value)) {
     throw fail(
         file.elements, "dicom.no_affine",
-        "frame " + std::to_string(n + 1) + " has no " + name + ", so nothing says where it lies");
+        "frame " + std::to_string(n + 1) + " has no " + name + ", so its place is not known");
   }
   return *group;
 }
@@ -182,9 +182,10 @@ void readPlanes(SegmentFile& out) {
         glm::length(column - out.planes.along_column) > kSame ||
         std::abs(spacing[0] - out.planes.row_spacing) > kSame * spacing[0] ||
         std::abs(spacing[1] - out.planes.column_spacing) > kSame * spacing[1]) {
-      throw fail(out.elements, "dicom.mixed",
-                 "frame " + std::to_string(n + 1) + " lies in another way than frame 1",
-                 "save the segmentation on one grid");
+      throw fail(
+          out.elements, "dicom.mixed",
+          "frame " + std::to_string(n + 1) + " is oriented or spaced differently from frame 1",
+          "save the segmentation on one grid");
     }
   }
   const bool unit = std::abs(glm::length(out.planes.along_row) - 1.0) < 1e-3 &&
@@ -207,8 +208,8 @@ void readSegmentsOfFrames(SegmentFile& out) {
       number = group == nullptr ? 0 : group->shortAt(kReferredNumber).value_or(0);
       if (!out.table.names.contains(number)) {
         throw fail(out.elements, "dicom.segments",
-                   "frame " + std::to_string(n + 1) + " is of segment " + std::to_string(number) +
-                       ", which the file does not describe",
+                   "frame " + std::to_string(n + 1) + " belongs to segment " +
+                       std::to_string(number) + ", which the file does not describe",
                    "save the segmentation again");
       }
       out.segment_of.push_back(number);
@@ -217,7 +218,7 @@ void readSegmentsOfFrames(SegmentFile& out) {
     if (is_new) continue;
     throw fail(out.elements, "dicom.duplicate",
                "frames " + std::to_string(at->second + 1) + " and " + std::to_string(n + 1) +
-                   " are of one segment and one place",
+                   " show the same segment at the same place",
                "save the segmentation again");
   }
 }
@@ -357,7 +358,7 @@ std::vector<Structure> readStructures(const SegmentFile& file) {
         throw fail(file.elements, "dicom.segments",
                    "the pixel in row " + std::to_string(i / columns) + ", column " +
                        std::to_string(i % columns) + " of frame " + std::to_string(n + 1) +
-                       " is of segment " + std::to_string(number) +
+                       " belongs to segment " + std::to_string(number) +
                        ", which the file does not describe",
                    "save the segmentation again");
       }

@@ -119,9 +119,10 @@ Slice sliceOf(DicomElements elements) {
 /// Throws if `s` does not belong to the same volume as `first`.
 void requireSame(const Slice& first, const Slice& s) {
   const auto differs = [&](const std::string& what) {
-    return inputError("dicom.mixed",
-                      "its " + what + " is not that of " + nameOf(first) + ", of the same series",
-                      "keep the files of one volume in a folder of their own", s.elements.path);
+    return inputError(
+        "dicom.mixed",
+        "its " + what + " differs from that of " + nameOf(first) + " in the same series",
+        "keep the files of one volume in a folder of their own", s.elements.path);
   };
   for (const auto& [tag, name] :
        {std::pair{kRows, "number of rows"}, {kColumns, "number of columns"}}) {
@@ -216,7 +217,7 @@ void tell(const std::vector<Slice>& slices, const Stack& stack, const DicomSerie
                     shortNumber(stack.widest, 4) + " mm apart, are linear");
   } else if (shear > kShearToTell) {
     notes.push_back("the slices are sheared by " + shortNumber(shear, 3) +
-                    " degrees (a tilted gantry): so are the voxels");
+                    " degrees (a tilted gantry); the voxels are kept sheared");
   }
   const DicomElements& e = first.elements;
   if (!e.text(kGantryTilt).empty()) {
@@ -379,11 +380,11 @@ DicomSeries findDicomSeries(const std::string& path, const std::string& wanted, 
   tell(slices, stack, out, out.notes);
   if (left_out.without_pixels > 0) {
     out.notes.push_back(std::to_string(left_out.without_pixels) +
-                        " DICOM files without pixels are passed over");
+                        " DICOM files without pixels were ignored");
   }
   if (left_out.segmentations > 0) {
     out.notes.push_back(std::to_string(left_out.segmentations) +
-                        " DICOM segmentations are passed over: named as a file they are read");
+                        " DICOM segmentations were ignored; to read one, name its file");
   }
   for (Slice& s : slices) out.slices.push_back(std::move(s.elements));
   return out;

@@ -45,8 +45,8 @@ bool looksLikeDistances(const Image& image) {
 
 std::string distancesNote(const Image& image) {
   if (!looksLikeDistances(image)) return {};
-  return "its values look like signed distances in mm, negative inside; their outside is "
-         "greater than a threshold";
+  return "its values look like signed distances in mm, negative inside; what is above a "
+         "threshold is their outside";
 }
 
 }  // namespace palpate::vdb

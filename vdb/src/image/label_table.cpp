@@ -119,8 +119,8 @@ class TableReader {
     const std::size_t close = line.rfind('"');
     if (columns.size() < 8 || open == close || columns[7].front() != '"' ||
         close + 1 != line.size()) {
-      throw fail("labels.table_row", "this is not a line of ITK-SNAP's",
-                 "index R G B A visible mesh \"name\"");
+      throw fail("labels.table_row", "this is not a line of an ITK-SNAP table",
+                 "a line is: index R G B A visible mesh \"name\"");
     }
     for (std::size_t i = 1; i < 7; ++i) {
       if (!numberIn<double>(columns[i])) {
@@ -161,7 +161,7 @@ class TableReader {
     for (std::size_t i = 2; i < columns.size(); ++i) {
       if (!numberIn<double>(columns[i])) {
         throw fail("labels.table_row",
-                   "`" + std::string(columns[i]) + "` follows the name and is not a number",
+                   "`" + std::string(columns[i]) + "` stands after the name but is not a number",
                    std::string(kExpected) + "; a name with blanks needs CSV or tabs");
       }
     }

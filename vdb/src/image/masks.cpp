@@ -77,15 +77,15 @@ void requireSameGrid(const Grid& grid, const std::string& path, const Grid& othe
   if (same_axes) {
     const Vec3 shift = other.place.origin - grid.place.origin;
     const Vec3 voxels = glm::inverse(grid.place.axes) * shift;
-    what = "it is shifted by " + vectorText(shift, 1e3) + " mm (right, front, up), which is " +
-           vectorText(voxels, 1.0) + " voxels, against " + fileName(path);
+    what = "it is shifted by " + vectorText(shift, 1e3) + " mm (right, front, up), or " +
+           vectorText(voxels, 1.0) + " voxels, from " + fileName(path);
     if (grid.size != other.size) {
       what +=
           ", and of " + shapeText(other.size) + " voxels where that has " + shapeText(grid.size);
     }
   } else {
-    what = "its grid is another than that of " + fileName(path) + ": " + gridText(other) +
-           ", there " + gridText(grid);
+    what = "its voxels lie on another grid than those of " + fileName(path) + ": " +
+           gridText(other) + " here, " + gridText(grid) + " there";
   }
   throw inputError("masks.grid", what,
                    "write all masks on one grid (with nearest neighbors), or leave this one out",
@@ -105,7 +105,7 @@ LabelTable tableOf(const std::vector<std::string>& files) {
     }
     const auto [at, is_new] = known.emplace(name, files[n]);
     if (!is_new) {
-      throw inputError("masks.name", "it is called '" + name + "' as " + at->second + " is",
+      throw inputError("masks.name", "it has the same name as " + at->second + ": '" + name + "'",
                        "give each mask a name of its own", files[n]);
     }
     table.names[static_cast<int>(n) + 1] = name;

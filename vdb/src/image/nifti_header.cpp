@@ -57,8 +57,9 @@ void checkMagic(const char* magic, char version, const std::string& path) {
 template <typename Header>
 void checkDimensions(const Header& header, const std::string& path, std::optional<int> frame) {
   if (header.dim[0] < 1 || header.dim[0] > 7) {
-    throw fail(path, "nifti.dimensions",
-               "the header gives " + std::to_string(header.dim[0]) + " dimensions; 1 to 7 can be");
+    throw fail(
+        path, "nifti.dimensions",
+        "the header gives " + std::to_string(header.dim[0]) + " dimensions; NIfTI has 1 to 7");
   }
   std::string shape;
   bool more_than_3d = false;
@@ -200,9 +201,10 @@ std::optional<Place> sform(const nifti_image& nim, const std::string& path) {
 
 Place chosen(const std::optional<Place>& form, const char* name, const std::string& path) {
   if (form) return *form;
-  throw fail(path, "nifti.no_affine",
-             std::string("the ") + name + " was asked for, and its code says that it is not set",
-             "leave the choice out, or choose another: sform, qform, spacing");
+  throw fail(
+      path, "nifti.no_affine",
+      std::string("the ") + name + " was asked for, but the file does not set it (its code is 0)",
+      "leave the choice out, or choose another: sform, qform, spacing");
 }
 
 Place placeInSpace(const nifti_image& nim, const std::array<int, 3>& size, const std::string& path,
@@ -221,8 +223,8 @@ Place placeInSpace(const nifti_image& nim, const std::array<int, 3>& size, const
     if (from_q) return *from_q;
     throw fail(
         path, "nifti.no_affine",
-        "neither the sform nor the qform is set, so nothing says where and which way round "
-        "the image lies",
+        "neither the sform nor the qform is set, so the place and orientation of the image "
+        "are not known",
         "set the sform, for example in Python with nibabel: image.set_sform(affine, code=1); or, "
         "if axes "
         "along R, A, S from 0 will do: affine: spacing (on the command line --affine spacing)");

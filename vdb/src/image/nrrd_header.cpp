@@ -66,7 +66,8 @@ void readSizes(const NrrdFields& fields, NrrdHeader& out) {
   if (!dimension || !sizes || *dimension < 1 ||
       sizes->size() != static_cast<std::size_t>(*dimension)) {
     throw fields.fail("nrrd.dimensions", "sizes",
-                      "sizes '" + fields.require("sizes") + "' are not those of " +
+                      "sizes '" + fields.require("sizes") +
+                          "' are not one whole number for each of the " +
                           fields.require("dimension") + " dimensions");
   }
   for (const std::int64_t n : *sizes) {
@@ -83,8 +84,9 @@ std::vector<std::string> readKinds(const NrrdFields& fields, std::size_t axes) {
   if (const std::string* text = fields.find("kinds")) {
     for (const std::string_view word : wordsOf(*text)) kinds.push_back(lowerCase(word));
     if (kinds.size() != axes) {
-      throw fields.fail("nrrd.dimensions", "kinds",
-                        "kinds '" + *text + "' are not those of " + std::to_string(axes) + " axes");
+      throw fields.fail(
+          "nrrd.dimensions", "kinds",
+          "kinds '" + *text + "' are not one for each of the " + std::to_string(axes) + " axes");
     }
   }
   return kinds;
@@ -108,9 +110,9 @@ void sortAxes(const NrrdFields& fields, const std::vector<std::optional<Vec3>>& 
   }
   if (spatial.size() != 3 || other.size() > 1) {
     throw fields.fail("nrrd.dimensions", "sizes",
-                      "of the " + std::to_string(out.sizes.size()) + " axes (" + shape + ") " +
-                          std::to_string(spatial.size()) +
-                          " lie in space; three are needed, and one other at most",
+                      std::to_string(spatial.size()) + " of the " +
+                          std::to_string(out.sizes.size()) + " axes (" + shape +
+                          ") lie in space; three must, and at most one other axis is allowed",
                       "save one 3-D volume of single values");
   }
   std::copy(spatial.begin(), spatial.end(), out.spatial.begin());

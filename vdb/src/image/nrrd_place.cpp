@@ -51,7 +51,7 @@ Vec3 toRas(const NrrdFields& fields, Space chosen) {
   if (chosen == Space::kLps) return {-1.0, -1.0, 1.0};
   throw fields.fail("nrrd.space", "space",
                     space == nullptr
-                        ? std::string("the header does not say which way its space runs")
+                        ? std::string("the header does not say which way the axes of its space run")
                         : "the space '" + *space + "' is not an anatomical one",
                     "say it: space: RAS or space: LPS (on the command line --space RAS)");
 }
@@ -88,7 +88,8 @@ Vec3 readSpacings(const NrrdFields& fields, const std::vector<std::optional<Vec3
   const auto numbers = numbersIn<double>(fields.require("spacings"));
   if (!numbers || numbers->size() != header.sizes.size()) {
     throw fields.fail("nrrd.spacing", "spacings",
-                      "spacings '" + fields.require("spacings") + "' are not those of " +
+                      "spacings '" + fields.require("spacings") +
+                          "' are not one number for each of the " +
                           std::to_string(header.sizes.size()) + " axes");
   }
   for (int a = 0; a < 3; ++a) {
@@ -142,11 +143,12 @@ void placeNrrd(const NrrdFields& fields, const std::vector<std::optional<Vec3>>&
     return;
   }
   if (directions.empty()) {
-    throw fields.fail("nrrd.no_affine", "space",
-                      "the header has no space directions, so nothing says where and which way "
-                      "round the image lies",
-                      "if axes along R, A, S from 0 will do: affine: spacing (on the command line "
-                      "--affine spacing)");
+    throw fields.fail(
+        "nrrd.no_affine", "space",
+        "the header has no space directions, so the place and orientation of the image "
+        "are not known",
+        "if axes along R, A, S from 0 will do: affine: spacing (on the command line "
+        "--affine spacing)");
   }
   if (fields.find("spacings") != nullptr) {
     throw fields.fail("nrrd.directions", "spacings",

@@ -212,7 +212,7 @@ std::vector<float> Segments::merged(const std::vector<std::vector<float>>& layer
       }
     }
   }
-  overlaps.tell(shared, "are in several segments, and the later segment of the file has each",
+  overlaps.tell(shared, "are in several segments; each goes to the later segment in the file",
                 table().names, voxel_volume, notes);
   if (unnamed > 0) {
     notes.push_back(std::to_string(unnamed) + " voxels have values that no segment has");

@@ -44,15 +44,16 @@ PlaneGrid planeGrid(const PlaneSet& planes, int margin, const std::string& path,
   double step = planes.stated_step;
   if (!(step > 0.0) || unevenness(heights, step) > kEvenSteps) {
     if (step > 0.0 && least > 0.0) {
-      notes.push_back("the step from plane to plane is said to be " + shortNumber(step, 4) +
-                      " mm, and the planes do not lie so: the least of their gaps counts, " +
-                      shortNumber(least, 4) + " mm");
+      notes.push_back(
+          "the header gives a step of " + shortNumber(step, 4) +
+          " mm between planes, but the planes lie otherwise: the smallest gap is used, " +
+          shortNumber(least, 4) + " mm");
     }
     step = least;
   }
   if (!(step > 0.0)) {
-    throw inputError("dicom.spacing", "all is in one plane, and nothing says how thick that is", {},
-                     path);
+    throw inputError("dicom.spacing", "all of it lies in one plane, whose thickness is not given",
+                     {}, path);
   }
   if (unevenness(heights, step) > kEvenSteps) {
     throw inputError("dicom.spacing",

@@ -116,9 +116,10 @@ std::vector<float> mergeStructures(const std::vector<Structure>& structures,
       }
     }
   }
-  const std::string rule = priority.empty() ? "the smallest of them has each"
-                                            : "the first by priority, then the smallest, has each";
-  overlaps.tell(shared, "are in several " + what + ", and " + rule, names,
+  const std::string rule = priority.empty()
+                               ? "each goes to the smallest of them"
+                               : "each goes to the first by priority, then to the smallest";
+  overlaps.tell(shared, "are in several " + what + "; " + rule, names,
                 std::abs(glm::determinant(image.axes)), image.notes);
   tellEmpty(structures, what, image.notes);
   return out;

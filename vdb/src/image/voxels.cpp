@@ -36,7 +36,7 @@ void Oddities::tell(std::vector<std::string>& notes) const {
   }
   if (rounded > 0) {
     notes.push_back(std::to_string(rounded) +
-                    " voxels are integers beyond 16777216 and were rounded");
+                    " voxels hold integers beyond 16777216 (2^24) and were rounded");
   }
 }
 

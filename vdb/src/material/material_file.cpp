@@ -68,7 +68,8 @@ double valueScale(const openvdb::GridBase& grid, const MaterialGridRequest& requ
   const std::string name = "grid '" + grid.getName() + "'";
   if (!request.dimension) {
     if (unit.empty() || unit == "1") return 1.0;
-    throw inputError("vdb.value_unit", name + " is in " + unit + ", and a ratio has no unit",
+    throw inputError("vdb.value_unit",
+                     name + " has the unit " + unit + ", but the parameter is a ratio and has none",
                      "name a grid of ratios, whose metadata has no 'unit' or the unit 1", path);
   }
   const std::string known(unitHelp(*request.dimension));
@@ -81,7 +82,8 @@ double valueScale(const openvdb::GridBase& grid, const MaterialGridRequest& requ
   }
   const Quantity one = parseQuantity("1 " + unit, *request.dimension);
   if (one.status != Quantity::Status::kOk) {
-    throw inputError("vdb.value_unit", name + " is in '" + unit + "', which is not a unit of it",
+    throw inputError("vdb.value_unit",
+                     name + " has the unit '" + unit + "', which does not fit the parameter",
                      "its unit must be " + known, path);
   }
   return one.si;
@@ -124,7 +126,7 @@ Image denseOf(const openvdb::FloatGrid& grid, double meters, double scale,
     count *= length;
     if (!(count <= kMostVoxels)) {
       throw inputError("vdb.large", name + " spans more than 2^31 voxels",
-                       "take away what is far off, or write it with larger voxels", path);
+                       "remove distant voxels, or write it with larger voxels", path);
     }
     image.size[static_cast<std::size_t>(axis)] = static_cast<int>(length);
   }

@@ -69,8 +69,8 @@ void checkGltf(const std::string& bytes, const std::string& extension, const std
                std::to_string(whole));
   }
   if (whole < kHead + kChunkHead) {
-    throw fail("the file promises " + std::to_string(whole) +
-               " bytes, fewer than its own head and that of a part have");
+    throw fail("the file claims a length of " + std::to_string(whole) +
+               " bytes, less than its headers need");
   }
   // To find a second chunk, Assimp uses the file's real length, not the length in the header.
   for (std::size_t at = kHead; at + kChunkHead <= bytes.size();) {

@@ -209,7 +209,7 @@ class Ply {
 Mesh readPly(const std::string& path, double meters_per_unit) {
   const std::string bytes = readBytes(path);
   if (!bytes.starts_with("ply")) {
-    throw inputError("mesh.unreadable", "this is no PLY file: it does not begin with 'ply'", "",
+    throw inputError("mesh.unreadable", "this is not a PLY file: it does not begin with 'ply'", "",
                      path);
   }
   return Ply(bytes, path, meters_per_unit).read();

@@ -352,9 +352,9 @@ SharpField withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double
   }
   if (made.left_to_grid > 0) {
     throw inputError("mesh.sharp_inner",
-                     "by every sharp edge, at " + eachInMillimeters(made.place) +
-                         " for one, is a wall that is not on the surface of the solid: parts "
-                         "overlap there, or the grid has lost it",
+                     "beside every sharp edge, for example at " + eachInMillimeters(made.place) +
+                         ", lies a wall that is not on the surface of the solid: parts overlap "
+                         "there, or the grid has lost it",
                      "make the mesh one solid in a mesh editor; or leave sharp edges to the grid",
                      mesh.source);
   }

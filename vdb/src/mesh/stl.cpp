@@ -104,7 +104,7 @@ Mesh readStl(const std::string& path, double meters_per_unit) {
   if (is_text) return AsciiStl(bytes, path, meters_per_unit).read();
   if (bytes.size() < kHeaderBytes) {
     throw inputError("mesh.unreadable",
-                     "this is no STL file: it has " + std::to_string(bytes.size()) +
+                     "this is not an STL file: it has " + std::to_string(bytes.size()) +
                          " bytes and does not begin with 'solid'",
                      "", path);
   }
@@ -112,7 +112,7 @@ Mesh readStl(const std::string& path, double meters_per_unit) {
                    "the file has " + std::to_string(bytes.size()) + " bytes, but " +
                        std::to_string(count) + " triangles of a binary STL file take " +
                        std::to_string(wanted),
-                   "it was cut short, or is no STL file; copy or export it again", path);
+                   "it was cut short or is not an STL file; copy or export it again", path);
 }
 
 }  // namespace palpate::vdb

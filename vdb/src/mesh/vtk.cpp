@@ -188,7 +188,7 @@ class Vtk {
   /// The format of version 5: where each cell begins, then all corners.
   std::vector<Cell> readOffsets(std::size_t offsets, std::size_t corners) {
     const auto numbers = [&](std::string_view name, std::size_t count) {
-      if (takeWord() != name) refuse("no " + std::string(name) + " in a list of cells");
+      if (takeWord() != name) refuse("a list of cells has no " + std::string(name));
       const Scalar type = takeScalar();
       beginData();
       Cell list(count);
@@ -201,8 +201,8 @@ class Vtk {
     for (std::size_t i = 1; i < begins.size(); ++i) {
       if (begins[i - 1] < 0 || begins[i] < begins[i - 1] ||
           begins[i] > static_cast<long long>(all.size())) {
-        refuse("offset " + std::to_string(begins[i]) + " of a list of " +
-               std::to_string(all.size()) + " corners");
+        refuse("offset " + std::to_string(begins[i]) + " falls outside of a list of " +
+               std::to_string(all.size()) + " corners, or behind the offset before it");
       }
       out.emplace_back(all.begin() + begins[i - 1], all.begin() + begins[i]);
     }
