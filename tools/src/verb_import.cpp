@@ -171,7 +171,7 @@ void checkBody(const ImportOptions& options, const ImportedScan& scan, Console& 
   if (outside == 0) return;
   const std::string& file = options.skin ? options.image : options.body;
   if (outside == labelled) {
-    throw inputError("import.body", "no labeled voxel is in the body: the two lie apart",
+    throw inputError("import.body", "no labeled voxel lies in the body: labels and body lie apart",
                      "give the body of the same scan", file);
   }
   console.note(file + ": " + formatCount(outside) + " of " + formatCount(labelled) +

@@ -32,12 +32,13 @@ constexpr const char* kDevice = "touch";
 
 void checkPage() {
   if (!pageFiles().empty()) return;
-  throw Error(ErrorKind::kOperation,
-              {"view.page",
-               "this build of palpate has no page: it was built where npm, which makes the page, "
-               "was not found",
-               "install Node.js 18 or later with npm (Debian: apt-get install npm), and run "
-               "tools/run.sh again"});
+  throw Error(
+      ErrorKind::kOperation,
+      {"view.page",
+       "this build of palpate has no page: npm, which makes the page, was not found when it "
+       "was built",
+       "install Node.js 18 or later with npm (Debian: apt-get install npm), and run "
+       "tools/run.sh again"});
 }
 
 std::string fileText(const std::string& file) {

@@ -91,9 +91,6 @@ inline constexpr double kWanders = 10.0;
 /// tried instead.
 inline constexpr double kSingularStep = 0.2;
 inline constexpr double kSingularTurn = 10.0;
-/// Share of the curvature that is rounding: a wall that bulges towards the proxy by no more than
-/// this counts as flat or hollow.
-inline constexpr double kFlat = 1e-6;
 /// A step from a saddle is lengthened if that makes it at least this many times longer.
 inline constexpr double kFarther = 1.5;
 /// If normals turn by more than this [rad] on the way, the middle of the chord is checked, ...

@@ -325,9 +325,9 @@ SharpField withSharpEdges(FieldPtr baked, const Mesh& mesh, double angle, double
   Solid solid = makeSolid(mesh, voxel, MeshSign::kVote);
   if (!solid.was_closed) {
     throw inputError("mesh.sharp_open",
-                     "exact triangles by sharp edges need a mesh that is closed, with triangles "
-                     "turned alike",
-                     "mend it in a mesh editor; or leave sharp edges to the grid", mesh.source);
+                     "exact triangles at sharp edges need a closed mesh whose triangles all face "
+                     "outwards, or all inwards",
+                     "repair it in a mesh editor; or leave sharp edges to the grid", mesh.source);
   }
   for (Vec3& v : solid.vertices) v *= voxel;
   keepSurface(solid, *baked, voxel);

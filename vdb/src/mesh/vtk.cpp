@@ -81,7 +81,8 @@ class Vtk {
     takeLine();  // the title
     const std::string_view kind = takeLine();
     if (!kind.starts_with("ASCII") && !kind.starts_with("BINARY")) {
-      refuse("'" + std::string(kind.substr(0, 40)) + "' where ASCII or BINARY is to be");
+      refuse("the third line must be ASCII or BINARY, not '" + std::string(kind.substr(0, 40)) +
+             "'");
     }
     binary_ = kind.starts_with("BINARY");
     const std::string_view data = takeWord();
