@@ -28,10 +28,11 @@ HybridOptions readOptions(const MapReader& reader) {
   options.parts = kParts[reader.choice("parts")];
   options.sampler = readSampler(reader);
   if (options.parts == Parts::kWhole && options.tolerance > 0.0) {
-    throw reader.errorAt("tolerance", "scene.range",
-                         "'tolerance' has no effect with parts: whole, which makes one grid, whatever "
-                         "its error",
-                         "leave out tolerance, or write parts: auto or parts: operands");
+    throw reader.errorAt(
+        "tolerance", "scene.range",
+        "'tolerance' has no effect with parts: whole, which makes one grid, whatever "
+        "its error",
+        "leave out tolerance, or write parts: auto or parts: operands");
   }
   return options;
 }
