@@ -223,7 +223,7 @@ materials:
   flesh: {stiffness: 300 N/m, cutting: 0.2 N}
 layers:
   - {name: fat, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
-  - {name: muscle, inside: {half_space: {point: [0, 0, -10], normal: [0, 0, 1]}}, wall: skin, content: flesh}
+  - {name: muscle, inside: {half_space: {point: [0, 0, -10], normal: [0, 0, 1]}}, wall: flesh, content: flesh}
 ports:
   - {name: puncture, between: [outside, fat], opens_at: 1 N, back: 0.1 N, hole: {radius: 1, reopens_at: 0.1 N}}
   - {name: fascia, between: [fat, muscle], opens_at: 1 N, back: 0.1 N}
@@ -387,6 +387,17 @@ layers:
   ASSERT_FALSE(stiffness.isConstant());
   EXPECT_EQ(feltAt(*scene, hip, result).wall,
             "bone (" + formatNumber(stiffness.at(result.proxy)) + " N/m)");
+}
+
+TEST(ViewedMarks, TheWallThatIsPressedIsTheFirstBeforeADeepHand) {
+  const ScenePtr scene = compile(parseScene(kTissue, "scene.yaml"));
+  TickResult result;
+  result.contact = true;
+  for (const double depth : {0.1, 5.0, 30.0}) {
+    // With 30 mm the hand is in the muscle, whose wall nobody has met yet.
+    const FeltWords felt = feltAt(*scene, Vec3(0.0, 0.0, -depth * kMm), result);
+    EXPECT_EQ(felt.wall, "skin (300 N/m)") << depth;
+  }
 }
 
 }  // namespace

@@ -80,6 +80,16 @@ Material materialAt(const Material& material, const Vec3& p) {
   return here;
 }
 
+/// The first other region on the way from the proxy to the hand, which may be several walls deep.
+RegionId regionBeyond(const Scene& scene, const TickResult& result, const Vec3& hip) {
+  constexpr double kFirst = 1.0 / 4096.0;  // of the way
+  for (double share = kFirst; share <= 1.0; share *= 2.0) {
+    const RegionId region = scene.regionAt(result.proxy + share * (hip - result.proxy));
+    if (region != result.region) return region;
+  }
+  return result.region;
+}
+
 }  // namespace
 
 Box3 viewBox(const Scene& scene) {
@@ -103,7 +113,7 @@ FeltWords feltAt(const Scene& scene, const Vec3& hip, const TickResult& result) 
   const Material* content = materialOf(scene, scene.regions()[result.region].content);
   if (content != nullptr) words.content = contentText(materialAt(*content, result.proxy));
   if (!result.contact || !isFinite(hip)) return words;
-  const RegionId beyond = scene.regionAt(hip);
+  const RegionId beyond = regionBeyond(scene, result, hip);
   if (beyond == result.region) {
     words.wall = "a wall";
     return words;
