@@ -22,7 +22,7 @@ const opening = 15; // [s] of each run, for a page to come up
 
 const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 const quantile = (values, share) => [...values].sort((a, b) => a - b)[Math.min(values.length - 1, Math.floor(share * values.length))];
-const number = (value, digits = 1) => value.toFixed(digits);
+const number = (value, digits = 1) => value?.toFixed(digits) ?? "-";
 const megabytes = (bytes) => `${number(bytes / 1e6, 2)} MB`;
 
 /** `palpate view` until it is stopped, or for some seconds. */
@@ -43,6 +43,8 @@ class Served {
       void this.ended.then((code) => reject(new Error(`palpate view ended with ${code}: ${this.err}${this.out}`)));
     });
     this.url.catch(() => {});
+    // Whatever ends the bench leaves no server behind.
+    process.once("exit", () => this.process.kill("SIGTERM"));
   }
   /** What it reports at its end. */
   async report() {
