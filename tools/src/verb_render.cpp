@@ -185,7 +185,7 @@ Report run(const RenderOptions& options, const GeneralOptions& general, Console&
   if (!options.iso.empty()) picture.line_spacing = parseSpacing(options.iso, unit);
   picture.forces = options.forces.value_or(0);
   if (!options.trace.empty()) picture.track = readTrack(options.trace);
-  picture.image = pictureImage(loaded, options.image);
+  picture.image = pictureImage(loaded.images(), options.image);
   picture.colors = loaded.colors();
   picture.anatomical = !loaded.images().empty();
   picture.title = vdb::fileName(options.scene);

@@ -162,7 +162,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
     PictureOptions picture;
     picture.title = vdb::fileName(options.scene);
     picture.track = trackOf(run.thin->rows());
-    picture.image = pictureImage(loaded, "");
+    picture.image = pictureImage(loaded.images(), "");
     picture.colors = loaded.colors();
     picture.anatomical = !loaded.images().empty();
     files.write(options.image, drawPicture(*scene, picture, console).png);

@@ -27,7 +27,8 @@ export class Felt {
     this.last = null;
     const cell = (text: string) => {
       const made = document.createElement("td");
-      made.textContent = text;
+      // Long names may break where their words do.
+      made.textContent = text.replaceAll("_", "_\u200b");
       return made;
     };
     this.rows = words.transitions.map((t) => {

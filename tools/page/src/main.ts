@@ -3,9 +3,12 @@
 import "./style.css";
 import { Felt } from "./felt";
 import { Layers } from "./layers";
+import { Marks } from "./marks";
 import { Scrubber } from "./scrubber";
+import { Slices } from "./slices";
 import { Space, type Cut } from "./space";
 import { Steering } from "./steering";
+import { Tour } from "./tour";
 import { Line, fetchScene, fetchSurface, type SceneWords, type Snapshot, type Vector } from "./wire";
 
 const byId = (id: string): HTMLElement => document.getElementById(id)!;
@@ -17,6 +20,9 @@ class Page {
   readonly space = new Space(this.canvas);
   readonly layers = new Layers(byId("layers"), this.space);
   readonly felt = new Felt();
+  readonly marks = new Marks(this.space);
+  readonly slices = new Slices(this.space);
+  readonly tour = new Tour(() => this.canvas.focus());
   readonly scrubber = new Scrubber((row) => this.line.row(row));
   readonly line: Line;
   readonly steering: Steering;
@@ -73,6 +79,7 @@ class Page {
     this.steering.step();
     this.scrubber.step();
     this.say();
+    this.slices.step(this.last?.tick?.proxy ?? null);
     this.space.draw();
     this.felt.draw();
   }
@@ -93,6 +100,9 @@ class Page {
       this.shown = 0;
       this.space.begin(words, !isFirst);
       this.layers.begin(words);
+      this.marks.begin(words);
+      this.slices.begin();
+      this.tour.begin(words);
       this.felt.begin(words);
       this.scrubber.begin(words);
       this.showText(words.text);
@@ -114,10 +124,14 @@ class Page {
     // The first page to come steers.
     if (!this.hasAsked && !snapshot.steered && words.mode !== "device") this.line.steer(true);
     this.hasAsked = true;
+    if (snapshot.ports) void this.marks.come(words);
+    if (snapshot.slices) void this.slices.come(words.number);
     this.showPlace(snapshot, words);
     if (snapshot.tick === undefined) return;
     const isReplay = words.mode === "replay";
     this.space.showTick(snapshot.tick);
+    this.marks.showTick(snapshot.tick);
+    this.tour.showTick(snapshot.tick);
     this.layers.mark(snapshot.tick.region);
     this.felt.show(snapshot.tick, isReplay);
   }

@@ -13,7 +13,7 @@ const up = new THREE.Vector3(0, 0, 1);
 const vectorOf = (v: Vector): THREE.Vector3 => new THREE.Vector3(v[0], v[1], v[2]);
 
 /** The color in a custom property of the style sheet. */
-const styleColor = (name: string): THREE.Color =>
+export const styleColor = (name: string): THREE.Color =>
   new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
 
 export class Space {
@@ -25,14 +25,16 @@ export class Space {
   private readonly hip: THREE.Mesh;
   private readonly proxy: THREE.Mesh;
   private readonly told: THREE.Mesh;
-  private readonly arrow: THREE.ArrowHelper;
+  private readonly arrow = new THREE.Group(); // along y, 1 long
   private readonly link: THREE.Line;
   private readonly trail: THREE.Points;
   private readonly trailPlaces = new Float32Array(3 * trailLength);
   private readonly trailColors = new Float32Array(3 * trailLength);
   private trailCount = 0;
   private readonly plane = new THREE.Plane(new THREE.Vector3(0, 1, 0), 0);
-  private cut: Cut = "off";
+  /** What layers are clipped by: the cut's plane, or nothing. */
+  readonly clipping: THREE.Plane[] = [];
+  cut: Cut = "off";
   private readonly probe = new THREE.Vector3();
   private center = new THREE.Vector3();
   private diagonal = 1;
@@ -62,12 +64,12 @@ export class Space {
     this.hip.renderOrder = 5;
     this.proxy.renderOrder = 6;
     this.told.renderOrder = 4;
-    this.arrow = new THREE.ArrowHelper(up, new THREE.Vector3(), 1, styleColor("--force"));
-    for (const part of [this.arrow.line, this.arrow.cone]) {
-      const material = part.material as THREE.Material;
-      material.depthTest = false;
-      material.transparent = true;
-      part.renderOrder = 7;
+    // A rod and not a line, which is one pixel wide whatever is asked for.
+    const yellow = new THREE.MeshBasicMaterial({ color: styleColor("--force"), depthTest: false, transparent: true });
+    for (const part of [new THREE.CylinderGeometry(1, 1, 1, 12).translate(0, 0.5, 0), new THREE.ConeGeometry(3, 1, 16).translate(0, 0.5, 0)]) {
+      const mesh = new THREE.Mesh(part, yellow);
+      mesh.renderOrder = 7;
+      this.arrow.add(mesh);
     }
     this.link = new THREE.Line(
       new THREE.BufferGeometry().setFromPoints([new THREE.Vector3(), new THREE.Vector3()]),
@@ -116,14 +118,17 @@ export class Space {
     geometry.setAttribute("position", new THREE.BufferAttribute(surface.points, 3));
     geometry.setAttribute("normal", new THREE.BufferAttribute(surface.normals, 3));
     geometry.setIndex(new THREE.BufferAttribute(surface.indices, 1));
-    const material = new THREE.MeshLambertMaterial({ color, side: THREE.DoubleSide });
+    const material = new THREE.MeshLambertMaterial({
+      color,
+      side: THREE.DoubleSide,
+      clippingPlanes: this.clipping,
+    });
     const mesh = new THREE.Mesh(geometry, material);
     // Inner surfaces are drawn first.
     mesh.renderOrder = -region;
     this.meshes.set(region, mesh);
     this.layers.add(mesh);
     this.look(region, opacity, visible);
-    this.setCut(this.cut);
   }
 
   look(region: number, opacity: number, visible: boolean): void {
@@ -140,9 +145,15 @@ export class Space {
 
   setCut(cut: Cut): void {
     this.cut = cut;
-    for (const mesh of this.meshes.values()) {
-      (mesh.material as THREE.Material).clippingPlanes = cut === "off" ? [] : [this.plane];
-    }
+    this.clipping.length = 0;
+    if (cut !== "off") this.clipping.push(this.plane);
+  }
+
+  add(part: THREE.Object3D): void {
+    this.scene.add(part);
+  }
+  remove(part: THREE.Object3D): void {
+    this.scene.remove(part);
   }
 
   showTick(tick: Tick): void {
@@ -156,8 +167,13 @@ export class Space {
     if (this.arrow.visible) {
       const length = this.diagonal * Math.min(0.02 + 0.06 * strength, 0.4);
       this.arrow.position.copy(this.proxy.position);
-      this.arrow.setDirection(force.divideScalar(strength));
-      this.arrow.setLength(length, 0.3 * Math.min(length, 0.06 * this.diagonal), 0.012 * this.diagonal);
+      this.arrow.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), force.divideScalar(strength));
+      const [rod, head] = this.arrow.children as [THREE.Mesh, THREE.Mesh];
+      const width = 0.0025 * this.diagonal;
+      const point = Math.min(0.3 * length, 0.018 * this.diagonal);
+      rod.scale.set(width, length - point, width);
+      head.scale.set(width, point, width);
+      head.position.y = length - point;
     }
     this.told.visible = tick.told !== null;
     this.link.visible = this.told.visible;

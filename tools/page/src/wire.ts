@@ -43,6 +43,13 @@ export interface Entry {
   force: number;
 }
 
+export interface Hole {
+  port: number;
+  point: Vector;
+  normal: Vector;
+  radius: number;
+}
+
 export interface Tick {
   n: number;
   t: number;
@@ -59,6 +66,8 @@ export interface Tick {
   worst_ns: number;
   late: number;
   passed: number[];
+  holes: Hole[];
+  shaft: Vector | null; // where it first went in; null: it is free
   content: string;
   wall: string;
   entries: Entry[];
@@ -67,6 +76,8 @@ export interface Tick {
 export interface Snapshot {
   scene: number;
   surfaces: number;
+  ports: boolean; // that on surfaces are known
+  slices: boolean; // of a scan are there
   steers: boolean;
   steered: boolean;
   pages: number;
@@ -89,7 +100,16 @@ export async function fetchScene(): Promise<SceneWords> {
 
 /** Null for a region without a surface. */
 export async function fetchSurface(scene: number, region: number): Promise<Surface | null> {
-  const answer = await fetch(`surface/${scene}/${region}`);
+  return await fetchTriangles(`surface/${scene}/${region}`);
+}
+
+/** The part of surfaces that is a port; null for a port that is on none. */
+export async function fetchPort(scene: number, port: number): Promise<Surface | null> {
+  return await fetchTriangles(`port/${scene}/${port}`);
+}
+
+async function fetchTriangles(path: string): Promise<Surface | null> {
+  const answer = await fetch(path);
   if (!answer.ok) return null;
   const bytes = await answer.arrayBuffer();
   const head = new DataView(bytes);
@@ -101,6 +121,33 @@ export async function fetchSurface(scene: number, region: number): Promise<Surfa
     normals: new Float32Array(bytes, 12 + 12 * points, 3 * points),
     indices: new Uint32Array(bytes, 12 + 24 * points, 3 * triangles),
   };
+}
+
+/** Where the slices of a scan are: see tools/src/view/gray_slices.h. */
+export interface SliceWords {
+  file: string;
+  box: { lo: Vector; hi: Vector };
+  counts: Vector;
+}
+
+export async function fetchSlices(scene: number): Promise<SliceWords | null> {
+  const answer = await fetch(`slices/${scene}`);
+  return answer.ok ? ((await answer.json()) as SliceWords) : null;
+}
+
+/** Null for a slice that is not there. Transparent where the scan has no value, and where it is black, as around a body. */
+export async function fetchSlice(scene: number, axis: number, index: number): Promise<ImageData | null> {
+  const answer = await fetch(`slice/${scene}/${axis}/${index}`);
+  if (!answer.ok) return null;
+  const bytes = await answer.arrayBuffer();
+  const head = new DataView(bytes);
+  const shades = new Uint8Array(bytes, 12);
+  const image = new ImageData(head.getUint32(4, true), head.getUint32(8, true));
+  shades.forEach((shade, i) => {
+    const gray = Math.max(shade - 1, 0);
+    image.data.set([gray, gray, gray, gray === 0 ? 0 : 255], 4 * i);
+  });
+  return image;
 }
 
 /** Calls `onSnapshot` for each message, and `onEnd` when the server is permanently gone. */

@@ -11,7 +11,11 @@ const Material* materialOf(const Scene& scene, int index) {
 std::string wallText(const Scene& scene, const Wall& wall) {
   if (wall.absent) return "absent";
   const Material* m = materialOf(scene, wall.material);
-  return m == nullptr ? "-" : m->name + " (" + formatParameter(m->stiffness) + " N/m)";
+  return m == nullptr ? "-" : materialText(*m);
+}
+
+std::string materialText(const Material& wall) {
+  return wall.name + " (" + formatParameter(wall.stiffness) + " N/m)";
 }
 
 const PortDescription* describedPort(const SceneDescription& description, const std::string& name) {

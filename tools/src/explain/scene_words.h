@@ -13,7 +13,9 @@ namespace palpate::tools {
 
 /// Null for an index below 0.
 [[nodiscard]] const Material* materialOf(const Scene& scene, int index);
-/// "skin (300 N/m)", "absent", or "-" if there is no wall.
+/// "skin (300 N/m)", for the material of a wall.
+[[nodiscard]] std::string materialText(const Material& wall);
+/// The same, "absent", or "-" if there is no wall.
 [[nodiscard]] std::string wallText(const Scene& scene, const Wall& wall);
 [[nodiscard]] std::string contentText(const Material& content);
 /// The description of a port as it was written; null for one that the scene made by itself.

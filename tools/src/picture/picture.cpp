@@ -151,9 +151,9 @@ bool isMask(const vdb::Image& image) {
 
 }  // namespace
 
-std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
+std::shared_ptr<const vdb::Image> pictureImage(const std::vector<SceneImage>& images,
                                                const std::string& wanted) {
-  for (const SceneImage& image : scene.images()) {
+  for (const SceneImage& image : images) {
     if (wanted.empty() ? image.has_names : image.name != wanted) continue;
     if (vdb::isStandIn(image.file)) {
       if (wanted.empty()) continue;

@@ -30,10 +30,10 @@ struct PictureOptions {
   int forces = 0;             ///< number of restForces() arrows along the longer side; 0: none
 };
 
-/// The image with the gray values to show: the scene's image called `wanted`, else the file
-/// `wanted`; if `wanted` is empty, the scene's first image without label names; null if there is
+/// The image with the gray values to show: the one of a scene's `images` called `wanted`, else the
+/// file `wanted`; if `wanted` is empty, the first of `images` without label names; null if there is
 /// none. @throws Error (kInput).
-[[nodiscard]] std::shared_ptr<const vdb::Image> pictureImage(const LoadedScene& scene,
+[[nodiscard]] std::shared_ptr<const vdb::Image> pictureImage(const std::vector<SceneImage>& images,
                                                              const std::string& wanted);
 
 struct Picture {

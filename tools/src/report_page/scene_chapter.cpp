@@ -20,7 +20,7 @@ void addSceneChapter(HtmlPage& page, const LoadedScene& loaded, const SceneChapt
   PictureOptions picture;
   picture.title = name;
   picture.track = what.track;
-  picture.image = pictureImage(loaded, "");
+  picture.image = pictureImage(loaded.images(), "");
   picture.colors = loaded.colors();
   picture.anatomical = !loaded.images().empty();
   const Picture drawn = drawPicture(scene, picture, console);

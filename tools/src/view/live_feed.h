@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "palpate/devices/record.h"
+#include "view/seen_marks.h"
 
 namespace palpate::tools {
 
@@ -53,6 +55,8 @@ struct FeedView {
   double strongest = 0.0;          ///< [N] largest force among the last ticks
   double work = 0.0;               ///< [J] work of the force on the hand so far
   std::vector<int> passed;         ///< by PortId, see PassedCounts
+  std::vector<SeenHole> holes;     ///< SeenMarks::holes()
+  std::optional<Vec3> fulcrum;     ///< [m] SeenMarks::fulcrum()
   std::vector<SeenEntry> entries;  ///< entries after the requested number, as far as they are kept
 };
 
@@ -63,7 +67,7 @@ class LiveFeed final : public devices::RecordSink {
   static constexpr std::size_t kKept = 512;  ///< entries
   static constexpr std::size_t kLast = 128;  ///< ticks over which look() takes the largest values
 
-  explicit LiveFeed(const Scene& scene) : passed_(scene) {}
+  explicit LiveFeed(const Scene& scene) : passed_(scene), marks_(scene) {}
 
   void add(const devices::RecordedTick& tick, std::span<const RegionEntry> entries) override {
     const std::lock_guard lock(mutex_);
@@ -83,6 +87,7 @@ class LiveFeed final : public devices::RecordSink {
     if (tick.turn.is_late) ++view_.late;
     for (const RegionEntry& entry : entries) {
       passed_.add(entry);
+      marks_.add(entry);
       entries_.push_back(
           {++entry_count_, now.number, entry.from, entry.to, entry.port, entry.force});
       if (entries_.size() > kKept) entries_.pop_front();
@@ -98,6 +103,8 @@ class LiveFeed final : public devices::RecordSink {
       out.strongest = std::max(out.strongest, tick.force);
     }
     out.passed = passed_.counts();
+    out.holes = marks_.holes();
+    out.fulcrum = marks_.fulcrum();
     for (const SeenEntry& entry : entries_) {
       if (entry.number > seen) out.entries.push_back(entry);
     }
@@ -114,6 +121,7 @@ class LiveFeed final : public devices::RecordSink {
   FeedView view_;
   std::array<LastTick, kLast> last_{};  ///< a ring: the newest tick replaces the oldest
   PassedCounts passed_;
+  SeenMarks marks_;
   std::deque<SeenEntry> entries_;
   std::uint64_t entry_count_ = 0;
 };

@@ -54,6 +54,43 @@ Json entriesJson(const std::vector<SeenEntry>& entries) {
   return list;
 }
 
+Json holesJson(const std::vector<SeenHole>& holes) {
+  Json list = Json::array();
+  for (const SeenHole& hole : holes) {
+    list.push_back({{"port", hole.port},
+                    {"point", vectorJson(hole.point)},
+                    {"normal", vectorJson(hole.normal)},
+                    {"radius", hole.radius}});
+  }
+  return list;
+}
+
+/// What of `scene` stands at `path`, which begins with the scene's number: "surface/NUMBER/REGION",
+/// "port/NUMBER/PORT", "slices/NUMBER" and "slice/NUMBER/AXIS/INDEX".
+std::optional<PageAnswer> partOf(const ShownScene& scene, std::string_view path) {
+  const std::size_t slash = path.find('/');
+  if (slash == std::string_view::npos) return std::nullopt;
+  const std::string_view kind = path.substr(0, slash);
+  path.remove_prefix(slash + 1);
+  const auto scene_number = numberIn(path, kind == "slices" ? '\0' : '/');
+  if (!scene_number || *scene_number != static_cast<std::size_t>(scene.number()))
+    return std::nullopt;
+  const auto slices = scene.slices();
+  if (kind == "slices") return slices ? std::optional(jsonAnswer(slices->json())) : std::nullopt;
+  std::shared_ptr<const std::string> bytes;
+  if (kind == "slice") {
+    const auto axis = numberIn(path, '/');
+    const auto index = numberIn(path, '\0');
+    auto slice = slices && axis && index ? slices->slice(*axis, *index) : std::nullopt;
+    if (slice) bytes = std::make_shared<const std::string>(std::move(*slice));
+  } else if (kind == "surface" || kind == "port") {
+    const auto which = numberIn(path, '\0');
+    if (which) bytes = kind == "port" ? scene.port(*which) : scene.surface(*which);
+  }
+  if (!bytes) return std::nullopt;
+  return PageAnswer{"application/octet-stream", std::move(bytes)};
+}
+
 }  // namespace
 
 PageDesk::PageDesk(PageSubject subject, std::shared_ptr<const ShownScene> shown)
@@ -83,25 +120,14 @@ std::optional<PageAnswer> PageDesk::get(std::string_view path) {
     if (subject_.run != nullptr) json["overview"] = subject_.run->overview(kColumns);
     return jsonAnswer(json);
   }
-  constexpr std::string_view kSurface = "surface/";
-  if (!path.starts_with(kSurface)) return std::nullopt;
-  path.remove_prefix(kSurface.size());
-  const auto number = numberIn(path, '/');
-  const auto region = numberIn(path, '\0');
-  if (!number || !region || *number != static_cast<std::size_t>(scene->number())) {
-    return std::nullopt;
-  }
-  auto bytes = scene->surface(*region);
-  if (!bytes) return std::nullopt;
-  return PageAnswer{"application/octet-stream", std::move(bytes)};
+  return partOf(*scene, path);
 }
 
 std::string PageDesk::snapshot(std::uint64_t& seen, const PagePlace& place) {
   const auto scene = shown();
-  Json json = {{"scene", scene->number()},
-               {"surfaces", scene->surfacesDone()},
-               {"steers", place.steers},
-               {"steered", place.is_steered},
+  Json json = {{"scene", scene->number()},    {"surfaces", scene->surfacesDone()},
+               {"ports", scene->portsDone()}, {"slices", scene->slices() != nullptr},
+               {"steers", place.steers},      {"steered", place.is_steered},
                {"pages", place.pages}};
   // A page that goes back in a record gets all of its past each time.
   const FeedView view =
@@ -126,6 +152,8 @@ std::string PageDesk::snapshot(std::uint64_t& seen, const PagePlace& place) {
                   {"worst_ns", view.worst_ns},
                   {"late", view.late},
                   {"passed", view.passed},
+                  {"holes", holesJson(view.holes)},
+                  {"shaft", view.fulcrum ? vectorJson(*view.fulcrum) : Json()},
                   {"content", felt.content},
                   {"wall", felt.wall},
                   {"entries", entriesJson(view.entries)}};

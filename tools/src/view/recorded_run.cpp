@@ -94,8 +94,26 @@ void RecordedRun::readTrace(const std::string& file, const Scene& scene) {
   }
 }
 
+RegionEntry RecordedRun::entryOf(std::size_t row, RegionId from, int port,
+                                 const Scene& scene) const {
+  // The tick before stood at the wall.
+  const Row& before = rows_[row > 0 ? row - 1 : 0];
+  RegionEntry entry{.from = from, .to = rows_[row].region, .port = port, .point = before.proxy};
+  const FieldPtr& inner = scene.regions()[std::max(entry.from, entry.to)].field;
+  if (inner) {
+    const Vec3 outward = unitOr(inner->sample(entry.point).gradient, Vec3(0.0));
+    entry.normal = entry.from < entry.to ? outward : -outward;
+  }
+  if (port >= 0 && before.contact) {
+    entry.force = glm::length(before.force);
+    entry.hole_radius = scene.ports()[static_cast<std::size_t>(port)].hole_radius;
+  }
+  return entry;
+}
+
 void RecordedRun::addUp(const Scene& scene) {
   PassedCounts passed(scene);
+  SeenMarks marks(scene);
   RegionId before = scene.startRegion();
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -108,10 +126,14 @@ void RecordedRun::addUp(const Scene& scene) {
     // If several ports are passed in one tick, the file does not contain the regions between them.
     for (std::size_t k = 0; k < row.events.size() || (k == 0 && row.region != before); ++k) {
       const int port = k < row.events.size() ? row.events[k] : -1;
-      const RegionEntry entry{.from = before, .to = row.region, .port = port};
+      const RegionEntry entry = entryOf(i, before, port, scene);
       passed.add(entry);
-      passings_.push_back(
-          {i, {++count, row.tick, entry.from, entry.to, port, 0.0}, passed.counts()});
+      marks.add(entry);
+      passings_.push_back({i,
+                           {++count, row.tick, entry.from, entry.to, port, 0.0},
+                           passed.counts(),
+                           marks.holes(),
+                           marks.fulcrum()});
     }
     before = row.region;
   }
@@ -138,6 +160,8 @@ FeedView RecordedRun::at(std::size_t row, std::uint64_t seen) const {
   for (const Passing& passing : passings_) {
     if (passing.row > row) break;
     view.passed = passing.passed;
+    view.holes = passing.holes;
+    view.fulcrum = passing.fulcrum;
     if (passing.entry.number > seen) view.entries.push_back(passing.entry);
   }
   if (view.entries.size() > LiveFeed::kKept) {

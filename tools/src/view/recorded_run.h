@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,12 +46,17 @@ class RecordedRun {
   void readRecord(const std::string& file, const Scene& scene);
   void readTrace(const std::string& file, const Scene& scene);
   void addUp(const Scene& scene);
+  /// The entry in row `row`, as far as rows tell.
+  [[nodiscard]] RegionEntry entryOf(std::size_t row, RegionId from, int port,
+                                    const Scene& scene) const;
 
   std::vector<Row> rows_;
   struct Passing {
     std::size_t row = 0;
     SeenEntry entry;
-    std::vector<int> passed;  ///< after this row
+    std::vector<int> passed;      ///< after this row
+    std::vector<SeenHole> holes;  ///< the same
+    std::optional<Vec3> fulcrum;  ///< [m] the same
   };
   std::vector<Passing> passings_;
   std::size_t ports_ = 0;

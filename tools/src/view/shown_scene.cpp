@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 #include "explain/scene_words.h"
 #include "json_parts.h"
 #include "palpate/scene/transitions.h"
 #include "palpate/vdb/text.h"
-#include "view/surface_net.h"
+#include "picture/picture.h"
+#include "view/port_patches.h"
 
 namespace palpate::tools {
 namespace {
@@ -68,6 +70,26 @@ Json transitionsJson(const Scene& scene, const SceneDescription& description) {
   return list;
 }
 
+/// `material` with the values that it has at `p` [m].
+Material materialAt(const Material& material, const Vec3& p) {
+  Material here = material;
+  for (Parameter* parameter : {&here.stiffness, &here.viscosity, &here.lattice.force, &here.cutting,
+                               &here.shaft.in.kinetic_force}) {
+    *parameter = parameter->at(p);
+  }
+  return here;
+}
+
+/// The first other region on the way from the proxy to the hand, which may be several walls deep.
+RegionId regionBeyond(const Scene& scene, const TickResult& result, const Vec3& hip) {
+  constexpr double kFirst = 1.0 / 4096.0;  // of the way
+  for (double share = kFirst; share <= 1.0; share *= 2.0) {
+    const RegionId region = scene.regionAt(result.proxy + share * (hip - result.proxy));
+    if (region != result.region) return region;
+  }
+  return result.region;
+}
+
 }  // namespace
 
 Box3 viewBox(const Scene& scene) {
@@ -89,17 +111,26 @@ FeltWords feltAt(const Scene& scene, const Vec3& hip, const TickResult& result) 
   FeltWords words;
   if (result.region >= scene.regions().size()) return words;
   const Material* content = materialOf(scene, scene.regions()[result.region].content);
-  if (content != nullptr) words.content = contentText(*content);
+  if (content != nullptr) words.content = contentText(materialAt(*content, result.proxy));
   if (!result.contact || !isFinite(hip)) return words;
-  const RegionId beyond = scene.regionAt(hip);
-  words.wall = beyond == result.region
-                   ? "a wall"
-                   : wallText(scene, scene.passages().wall(result.region, beyond));
+  const RegionId beyond = regionBeyond(scene, result, hip);
+  if (beyond == result.region) {
+    words.wall = "a wall";
+    return words;
+  }
+  const Wall& wall = scene.passages().wall(result.region, beyond);
+  const Material* material = wall.absent ? nullptr : materialOf(scene, wall.material);
+  words.wall = material == nullptr ? wallText(scene, wall)
+                                   : materialText(materialAt(*material, result.proxy));
   return words;
 }
 
 ShownScene::ShownScene(ScenePtr scene, const LoadedScene& loaded, std::string text, int number)
-    : scene_(std::move(scene)), number_(number), surfaces_(scene_->regions().size()) {
+    : scene_(std::move(scene)),
+      number_(number),
+      images_(loaded.images()),
+      surfaces_(scene_->regions().size()),
+      ports_(scene_->ports().size()) {
   const SceneDescription& description = loaded.description();
   json_ = {{"schema", "palpate.view/1"},
            {"number", number},
@@ -113,7 +144,7 @@ ShownScene::ShownScene(ScenePtr scene, const LoadedScene& loaded, std::string te
            {"transitions", transitionsJson(*scene_, description)},
            {"text", std::move(text)}};
   for (const Port& port : scene_->ports()) json_["ports"].push_back(port.name);
-  thread_ = std::thread([this] { makeSurfaces(); });
+  thread_ = std::thread([this] { make(); });
 }
 
 ShownScene::~ShownScene() {
@@ -126,10 +157,26 @@ std::shared_ptr<const std::string> ShownScene::surface(std::size_t region) const
   return region < surfaces_.size() ? surfaces_[region] : nullptr;
 }
 
-void ShownScene::makeSurfaces() {
+std::shared_ptr<const std::string> ShownScene::port(std::size_t port) const {
+  const std::lock_guard lock(mutex_);
+  return port < ports_.size() ? ports_[port] : nullptr;
+}
+
+std::shared_ptr<const GraySlices> ShownScene::slices() const {
+  const std::lock_guard lock(mutex_);
+  return slices_;
+}
+
+void ShownScene::make() {
   // Applies to this thread only: the loop has priority.
   constexpr int kNice = 10;
   setpriority(PRIO_PROCESS, 0, kNice);
+  makePorts(makeSurfaces());
+  makeSlices();
+}
+
+std::vector<ShownScene::LayerNet> ShownScene::makeSurfaces() {
+  std::vector<LayerNet> nets;
   const Box3 view = viewBox(*scene_);
   const double tolerance = kTolerance * glm::length(view.size());
   for (std::size_t i = 0; i < surfaces_.size() && !stop_.load(); ++i) {
@@ -140,14 +187,46 @@ void ShownScene::makeSurfaces() {
                            ? bounds.grownBy(kMargin * longest(bounds)).intersectedWith(view)
                            : view;
       if (!box.isEmpty() && longest(box) > 0.0) {
-        const SurfaceNet net = surfaceWithin(*field, box, tolerance);
+        SurfaceNet net = surfaceWithin(*field, box, tolerance);
         auto bytes = std::make_shared<const std::string>(surfaceBytes(net));
+        if (!scene_->ports().empty()) nets.push_back({static_cast<RegionId>(i), std::move(net)});
         const std::lock_guard lock(mutex_);
         surfaces_[i] = std::move(bytes);
       }
     }
     done_.store(static_cast<int>(i) + 1);
   }
+  return nets;
+}
+
+void ShownScene::makePorts(const std::vector<LayerNet>& nets) {
+  PortPatches patches(scene_, glm::length(viewBox(*scene_).size()));
+  for (const LayerNet& layer : nets) {
+    patches.add(layer.region, layer.net, [this] { return !stop_.load(); });
+  }
+  for (std::size_t i = 0; i < ports_.size(); ++i) {
+    if (patches.patches()[i].triangles.empty()) continue;
+    auto bytes = std::make_shared<const std::string>(surfaceBytes(patches.patches()[i]));
+    const std::lock_guard lock(mutex_);
+    ports_[i] = std::move(bytes);
+  }
+  are_ports_done_.store(true);
+}
+
+void ShownScene::makeSlices() {
+  if (stop_.load()) return;
+  std::shared_ptr<const vdb::Image> image;
+  try {
+    image = pictureImage(images_, {});
+  } catch (const std::exception&) {
+    // Gone since the scene was read, which does without it.
+  }
+  if (!image) return;
+  auto slices =
+      std::make_shared<const GraySlices>(image, viewBox(*scene_), [this] { return !stop_.load(); });
+  if (slices->isEmpty()) return;
+  const std::lock_guard lock(mutex_);
+  slices_ = std::move(slices);
 }
 
 }  // namespace palpate::tools

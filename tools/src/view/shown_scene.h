@@ -1,6 +1,6 @@
 #pragma once
-/// ShownScene: a scene in the form that a page shows: names, colors, words, and surfaces that are
-/// made one after another.
+/// ShownScene: a scene in the form that a page shows: names, colors, words; and surfaces, ports and
+/// gray slices, which are made one after another.
 
 #include <atomic>
 #include <memory>
@@ -13,6 +13,8 @@
 #include "palpate/render/haptic_renderer.h"
 #include "palpate/scene/scene.h"
 #include "report.h"
+#include "view/gray_slices.h"
+#include "view/surface_net.h"
 
 namespace palpate::tools {
 
@@ -23,7 +25,8 @@ namespace palpate::tools {
 /// that is the outside.
 [[nodiscard]] Vec3 handStart(const Scene& scene);
 
-/// The feeling of the probe at a place, in words.
+/// The feeling of the probe, in words. A parameter that differs from place to place is given by its
+/// value at the proxy.
 struct FeltWords {
   std::string content;  ///< of the proxy's region; empty: it is not felt
   std::string wall;     ///< the pressed wall; empty: none
@@ -36,7 +39,7 @@ class ShownScene {
   /// it.
   static constexpr double kTolerance = 5e-4;
 
-  /// Reads the needed parts of `loaded`, and makes the surfaces in a separate thread. `number`: how
+  /// Reads the needed parts of `loaded`, and makes the rest in a separate thread. `number`: how
   /// many scenes were shown before.
   ShownScene(ScenePtr scene, const LoadedScene& loaded, std::string text, int number);
   ~ShownScene();
@@ -50,16 +53,36 @@ class ShownScene {
   [[nodiscard]] std::shared_ptr<const std::string> surface(std::size_t region) const;
   /// How many regions are done so far, in their order.
   [[nodiscard]] int surfacesDone() const noexcept { return done_.load(); }
+  /// Where the port is on surfaces, in the form of these. Null if it was not made yet, or is on
+  /// none.
+  [[nodiscard]] std::shared_ptr<const std::string> port(std::size_t port) const;
+  [[nodiscard]] bool portsDone() const noexcept { return are_ports_done_.load(); }
+  /// Of the scene's first image that is not one of labels. Null if they were not made yet, or there
+  /// is none.
+  [[nodiscard]] std::shared_ptr<const GraySlices> slices() const;
 
  private:
-  void makeSurfaces();
+  struct LayerNet {
+    RegionId region = kOutside;
+    SurfaceNet net;
+  };
+
+  void make();
+  /// Those of layers that ports may be on.
+  [[nodiscard]] std::vector<LayerNet> makeSurfaces();
+  void makePorts(const std::vector<LayerNet>& nets);
+  void makeSlices();
 
   ScenePtr scene_;
   int number_;
   Json json_;
+  std::vector<SceneImage> images_;
   mutable std::mutex mutex_;
   std::vector<std::shared_ptr<const std::string>> surfaces_;
+  std::vector<std::shared_ptr<const std::string>> ports_;
+  std::shared_ptr<const GraySlices> slices_;
   std::atomic<int> done_{0};
+  std::atomic<bool> are_ports_done_{false};
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -76,21 +76,6 @@ double distanceOf(const FieldSample& sample) {
   return slope > 0.0 ? std::fabs(sample.value) / slope : 0.0;
 }
 
-/// `p` moved onto the surface, by at most half a cell.
-Vec3 onSurface(const Field& field, Vec3 p, double step) {
-  constexpr int kSteps = 5;
-  const Vec3 begin = p;
-  for (int i = 0; i < kSteps; ++i) {
-    const FieldSample sample = field.sample(p);
-    const double slope = glm::dot(sample.gradient, sample.gradient);
-    if (!(slope > 0.0) || sample.value == 0.0) break;
-    const Vec3 next = p - sample.value / slope * sample.gradient;
-    if (!isFinite(next) || glm::length(next - begin) > 0.5 * step) break;
-    p = next;
-  }
-  return p;
-}
-
 /// Makes the points of cells on demand.
 class Net {
  public:
@@ -118,7 +103,7 @@ class Net {
         ++count;
       }
     }
-    const Vec3 p = onSurface(field_, sum / static_cast<double>(count), lattice_.step());
+    const Vec3 p = onSurface(field_, sum / static_cast<double>(count), 0.5 * lattice_.step());
     known = static_cast<std::uint32_t>(out_.points.size());
     out_.points.push_back(p);
     out_.normals.push_back(unitOr(field_.sample(p).gradient, Vec3(0.0, 0.0, 1.0)));
@@ -162,6 +147,20 @@ void appendVector(std::string& bytes, const Vec3& v) {
 }
 
 }  // namespace
+
+Vec3 onSurface(const Field& field, Vec3 p, double reach) {
+  constexpr int kSteps = 5;
+  const Vec3 begin = p;
+  for (int i = 0; i < kSteps; ++i) {
+    const FieldSample sample = field.sample(p);
+    const double slope = glm::dot(sample.gradient, sample.gradient);
+    if (!(slope > 0.0) || sample.value == 0.0) break;
+    const Vec3 next = p - sample.value / slope * sample.gradient;
+    if (!isFinite(next) || glm::length(next - begin) > reach) break;
+    p = next;
+  }
+  return p;
+}
 
 SurfaceNet surfaceNet(const Field& field, const Box3& box, int cells) {
   SurfaceNet out;

@@ -19,6 +19,9 @@ struct SurfaceNet {
   int cells = 0;  ///< number along the longest side of the box
 };
 
+/// `p` moved onto the surface of `field` along its gradient, by at most `reach` [m].
+[[nodiscard]] Vec3 onSurface(const Field& field, Vec3 p, double reach);
+
 /// The part of the surface of `field` within the bounded `box`: one point in each lattice cell that
 /// the surface passes through, moved onto the surface along the gradient. Where the surface leaves
 /// the box, the mesh is open.

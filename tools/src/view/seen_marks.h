@@ -1,0 +1,76 @@
+#pragma once
+/// SeenMarks: what the probe left behind on its way: holes, and the way of its shaft.
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "palpate/interior/punctures.h"
+#include "palpate/render/haptic_renderer.h"
+#include "palpate/scene/scene.h"
+
+namespace palpate::tools {
+
+/// Where a wall gave way and is open from then on.
+struct SeenHole {
+  PortId port = 0;
+  Vec3 point{0.0, 0.0, 0.0};   ///< [m]
+  Vec3 normal{0.0, 0.0, 0.0};  ///< [-] of the wall; zero where it has none
+  double radius = 0.0;         ///< [m]
+};
+
+/// Made of the entries into regions that a renderer reports: a page never asks the loop for its
+/// own memory.
+class SeenMarks {
+ public:
+  explicit SeenMarks(const Scene& scene) : keeps_(scene.keepsMemory()) {
+    for (const Region& region : scene.regions()) {
+      const auto content = static_cast<std::size_t>(region.content);
+      const Material* material = region.content < 0 ? nullptr : &scene.materials()[content];
+      holds_.push_back(material != nullptr &&
+                       (material->shaft.stiffness > 0.0 || material->cutting.range().most > 0.0));
+    }
+  }
+
+  void add(const RegionEntry& entry) {
+    if (entry.port >= 0 && entry.hole_radius > 0.0 && entry.force > 0.0) addHole(entry);
+    if (entry.to == kOutside && !keeps_) holes_.clear();
+    for (std::size_t i = way_.size(); i > 0; --i) {
+      const RegionEntry& step = way_[i - 1];
+      // A needle may also come out on the other side, and is held all the more.
+      if (step.from != entry.to || glm::dot(step.normal, entry.normal) > 0.0) continue;
+      way_.resize(i - 1);
+      return;
+    }
+    if (way_.empty() && !holds_[entry.to]) return;
+    if (way_.size() < kMostSteps) way_.push_back(entry);
+  }
+
+  [[nodiscard]] const std::vector<SeenHole>& holes() const noexcept { return holes_; }
+  /// [m] Where the shaft first went into what holds it; none: it is free.
+  [[nodiscard]] std::optional<Vec3> fulcrum() const {
+    return way_.empty() ? std::nullopt : std::optional(way_.front().point);
+  }
+
+ private:
+  static constexpr std::size_t kMostSteps = 64;
+
+  void addHole(const RegionEntry& entry) {
+    const auto port = static_cast<PortId>(entry.port);
+    const auto is_same = [&](const SeenHole& hole) {
+      return hole.port == port && glm::distance(hole.point, entry.point) <= hole.radius;
+    };
+    if (std::any_of(holes_.begin(), holes_.end(), is_same)) return;
+    // As many as the loop remembers.
+    if (holes_.size() == Punctures::kMaxHoles) holes_.erase(holes_.begin());
+    holes_.push_back({port, entry.point, entry.normal, entry.hole_radius});
+  }
+
+  bool keeps_;
+  std::vector<bool> holds_;  ///< by region: whether its content holds a needle
+  std::vector<SeenHole> holes_;
+  std::vector<RegionEntry> way_;  ///< of the shaft, from where it first went in
+};
+
+}  // namespace palpate::tools
