@@ -1,6 +1,7 @@
 // The page of `palpate view`.
 
 import "./style.css";
+import { Edits } from "./edits";
 import { Felt } from "./felt";
 import { Layers } from "./layers";
 import { Scrubber } from "./scrubber";
@@ -17,6 +18,7 @@ class Page {
   readonly space = new Space(this.canvas);
   readonly layers = new Layers(byId("layers"), this.space);
   readonly felt = new Felt();
+  readonly edits = new Edits();
   readonly scrubber = new Scrubber((row) => this.line.row(row));
   readonly line: Line;
   readonly steering: Steering;
@@ -95,7 +97,6 @@ class Page {
       this.layers.begin(words);
       this.felt.begin(words);
       this.scrubber.begin(words);
-      this.showText(words.text);
     } catch (error) {
       this.notice(`The scene could not be fetched: ${String(error)}`);
     }
@@ -104,6 +105,7 @@ class Page {
 
   private take(snapshot: Snapshot): void {
     this.last = snapshot;
+    this.edits.take(snapshot.edit);
     const words = this.words;
     if (words === null) return;
     if (snapshot.scene !== words.number) {
@@ -144,16 +146,6 @@ class Page {
     take.textContent = snapshot.steers ? "Let go" : "Steer";
     take.hidden = words.mode === "device";
     take.disabled = !snapshot.steers && snapshot.steered;
-  }
-
-  private showText(text: string): void {
-    byId("lines").replaceChildren(
-      ...text.split("\n").map((line) => {
-        const row = document.createElement("li");
-        row.textContent = line;
-        return row;
-      }),
-    );
   }
 
   private openTab(name: string): void {

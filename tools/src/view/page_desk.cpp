@@ -54,10 +54,29 @@ Json entriesJson(const std::vector<SeenEntry>& entries) {
   return list;
 }
 
+const char* stateName(SceneEdit::State state) {
+  switch (state) {
+    case SceneEdit::State::kFelt:
+      return "felt";
+    case SceneEdit::State::kCompiling:
+      return "compiling";
+    case SceneEdit::State::kRefused:
+      return "refused";
+    case SceneEdit::State::kRecorded:
+      break;
+  }
+  return "recorded";
+}
+
 }  // namespace
 
 PageDesk::PageDesk(PageSubject subject, std::shared_ptr<const ShownScene> shown)
-    : subject_(std::move(subject)), told_(handStart(shown->scene())), shown_(std::move(shown)) {}
+    : subject_(std::move(subject)),
+      told_(handStart(shown->scene())),
+      told_in_(shown->number()),
+      shown_(std::move(shown)) {
+  edit_.text = shown_->text();
+}
 
 PageHost PageDesk::host() {
   return {.get = [this](std::string_view path) { return get(path); },
@@ -71,10 +90,84 @@ std::shared_ptr<const ShownScene> PageDesk::shown() const {
   return shown_;
 }
 
+std::shared_ptr<const ShownScene> PageDesk::goTo(std::uint64_t number) {
+  const std::lock_guard lock(mutex_);
+  for (auto& other : others_) {
+    if (static_cast<std::uint64_t>(other->number()) != number) continue;
+    if (other->number() < shown_->number()) return other;
+    // The one before is freed by forgetPast(), not here: its thread may have to end first.
+    std::swap(other, shown_);
+    break;
+  }
+  return shown_;
+}
+
+void PageDesk::expect(std::shared_ptr<const ShownScene> shown) {
+  std::shared_ptr<const ShownScene> replaced;
+  const std::lock_guard lock(mutex_);
+  // One that was refused after all had the same number.
+  for (auto& other : others_) {
+    if (other->number() == shown->number()) replaced = std::move(other);
+  }
+  std::erase(others_, nullptr);
+  others_.push_back(std::move(shown));
+}
+
+void PageDesk::edited(SceneEdit edit) {
+  const std::lock_guard lock(mutex_);
+  edit_ = std::move(edit);
+  ++edits_;
+}
+
+void PageDesk::forgetPast() {
+  // No page need be there to follow the loop.
+  (void)goTo(subject_.feed->look(0).scene);
+  std::vector<std::shared_ptr<const ShownScene>> past;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& other : others_) {
+      // One that an answer still needs goes another time. Nobody gets it meanwhile.
+      const bool is_past = other->number() < shown_->number() && other.use_count() == 1;
+      if (is_past) past.push_back(std::move(other));
+    }
+    std::erase(others_, nullptr);
+  }
+}
+
+std::string PageDesk::sceneText() const {
+  const std::lock_guard lock(mutex_);
+  Json json = {{"edit", edits_},     {"state", stateName(edit_.state)},
+               {"text", edit_.text}, {"line", edit_.line > 0 ? Json(edit_.line) : Json()},
+               {"problem", Json()},  {"hint", Json()}};
+  if (edit_.problem) {
+    json["problem"] = edit_.problem->message;
+    // A fault in another file needs that file's name.
+    if (edit_.line == 0 && !edit_.problem->file.empty()) {
+      json["problem"] = edit_.problem->file + ": " + edit_.problem->message;
+    }
+    json["hint"] = edit_.problem->hint;
+  }
+  return textOf(json);
+}
+
+std::shared_ptr<const std::string> PageDesk::surface(std::size_t number, std::size_t region) const {
+  const std::lock_guard lock(mutex_);
+  const auto is_it = [&](const auto& scene) {
+    return static_cast<std::size_t>(scene->number()) == number;
+  };
+  if (is_it(shown_)) return shown_->surface(region);
+  const auto at = std::find_if(others_.begin(), others_.end(), is_it);
+  return at == others_.end() ? nullptr : (*at)->surface(region);
+}
+
+std::uint64_t PageDesk::edits() const {
+  const std::lock_guard lock(mutex_);
+  return edits_;
+}
+
 std::optional<PageAnswer> PageDesk::get(std::string_view path) {
-  const auto scene = shown();
   if (path == "scene.json") {
-    Json json = scene->json();
+    Json json = shown()->json();
     if (!subject_.about.is_null()) json.update(subject_.about);
     json["mode"] = subject_.run != nullptr    ? "replay"
                    : subject_.hand != nullptr ? "hand"
@@ -83,29 +176,30 @@ std::optional<PageAnswer> PageDesk::get(std::string_view path) {
     if (subject_.run != nullptr) json["overview"] = subject_.run->overview(kColumns);
     return jsonAnswer(json);
   }
+  if (path == "text.json") {
+    return PageAnswer{"application/json", std::make_shared<const std::string>(sceneText())};
+  }
   constexpr std::string_view kSurface = "surface/";
   if (!path.starts_with(kSurface)) return std::nullopt;
   path.remove_prefix(kSurface.size());
   const auto number = numberIn(path, '/');
   const auto region = numberIn(path, '\0');
-  if (!number || !region || *number != static_cast<std::size_t>(scene->number())) {
-    return std::nullopt;
-  }
-  auto bytes = scene->surface(*region);
+  if (!number || !region) return std::nullopt;
+  auto bytes = surface(*number, *region);
   if (!bytes) return std::nullopt;
   return PageAnswer{"application/octet-stream", std::move(bytes)};
 }
 
 std::string PageDesk::snapshot(std::uint64_t& seen, const PagePlace& place) {
-  const auto scene = shown();
-  Json json = {{"scene", scene->number()},
-               {"surfaces", scene->surfacesDone()},
-               {"steers", place.steers},
-               {"steered", place.is_steered},
-               {"pages", place.pages}};
   // A page that goes back in a record gets all of its past each time.
   const FeedView view =
       subject_.run != nullptr ? subject_.run->at(row_, 0) : subject_.feed->look(seen);
+  const auto scene = subject_.run != nullptr ? shown() : goTo(view.scene);
+  // The mapping of the device may be another one in a new scene.
+  if (subject_.hand != nullptr && scene->number() != told_in_) steer(told_);
+  Json json = {{"scene", scene->number()},          {"edit", edits()},
+               {"surfaces", scene->surfacesDone()}, {"steers", place.steers},
+               {"steered", place.is_steered},       {"pages", place.pages}};
   if (subject_.run != nullptr) json["row"] = row_;
   if (view.ticks == 0) return textOf(json);
   if (!view.entries.empty()) seen = view.entries.back().number;
@@ -145,10 +239,12 @@ void PageDesk::command(const std::string& message) {
 
 void PageDesk::steer(const Vec3& place) {
   if (subject_.hand == nullptr) return;
-  const Box3 view = viewBox(shown()->scene());
+  const auto scene = shown();
+  const Box3 view = viewBox(scene->scene());
   const Box3 room = view.grownBy(glm::length(view.size()));
   told_ = glm::clamp(place, room.lo, room.hi);
-  subject_.hand->steer(toDevice(subject_.mapping, told_));
+  told_in_ = scene->number();
+  subject_.hand->steer(toDevice(scene->scene().device(), told_));
 }
 
 }  // namespace palpate::tools
