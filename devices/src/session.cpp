@@ -70,7 +70,7 @@ struct Session::Shared {
   /// The renderer's state between two ticks, for a thread that asked for it.
   struct Snapshot {
     std::uint64_t request = 0;
-    std::uint64_t scene = 0;    ///< number of the scene
+    std::uint64_t offer = 0;    ///< number of the offer that brought its scene
     std::uint64_t entries = 0;  ///< regions that the probe has entered so far
     RendererState state;
   };
@@ -84,17 +84,18 @@ struct Session::Shared {
   SeqLock<SessionView> view;
   SeqLock<Snapshot> snapshot;
   std::atomic<std::uint64_t> asked{0};    ///< number of the last request for a snapshot
-  std::atomic<std::uint64_t> handled{0};  ///< number of the last scene that was taken or put away
-  std::atomic<bool> was_old{false};       ///< that scene was put away
+  std::atomic<std::uint64_t> handled{0};  ///< number of the last offer that was taken or put away
+  std::atomic<bool> was_old{false};       ///< that offer was put away
 
   // Used by the servo thread only.
   std::uint64_t answered = 0;  ///< number of the last request that was answered
-  std::uint64_t scene = 0;     ///< number of the present scene
+  OfferTag felt;               ///< of the present scene
   std::uint64_t entries = 0;
 
   // Used by the offering thread only.
   std::vector<Known> known;  ///< scenes that a snapshot may belong to
-  std::uint64_t offered = 0;
+  std::uint64_t offers = 0;  ///< made so far
+  std::uint64_t scenes = 0;  ///< offered so far
 
   /// For the offering thread: the present state. No value if the servo thread does not run.
   [[nodiscard]] std::optional<Snapshot> ask();
@@ -167,6 +168,9 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
   SessionTick tick;
   tick.number = ticks_;
   tick.reading = reading;
+  tick.scene = shared_->felt.scene;
+  tick.begins_anew = begins_anew_;
+  begins_anew_ = false;
   tick.is_checkpoint =
       settings_.checkpoint_every > 0 && ticks_ > 0 && ticks_ % settings_.checkpoint_every == 0;
   if (tick.is_checkpoint) saveCheckpoint();
@@ -198,7 +202,8 @@ SessionTick Session::step(const DeviceState& reading, DeviceFrame frame) noexcep
   const double share = swap_fade_ * now.share;
   const Felt felt = feel(now, frame, tick);
   shared_->entries += renderer_->entries().size();
-  tick.force = is_mapped ? mapping.forceToDevice(share * felt.force) : share * felt.force;
+  const Vec3 given = afterSwap(share * felt.force, tick.dt);
+  tick.force = is_mapped ? mapping.forceToDevice(given) : given;
   if (passivity_) {
     const double work = renderer_->sourceWork();
     const double source = (is_mapped ? mapping.workAtHand() : 1.0) * (work - source_work_);
@@ -245,14 +250,17 @@ Session::Felt Session::feel(const Clutched& probe, DeviceFrame frame, SessionTic
 
 std::optional<SessionView> Session::view() const noexcept { return shared_->view.load(); }
 
-void Session::offer(ScenePtr scene, const RendererSettings& settings) {
+SceneOffer Session::offer(ScenePtr scene, const RendererSettings& settings) {
   auto renderer = makeRenderer(scene, settings);
   Shared& shared = *shared_;
   const RendererKind kind = settings.kind.value_or(scene->renderer());
+  SceneOffer out{.scene = ++shared.scenes};
+  const double max_growth = settings.limits.over(scene->forceLimits()).max_growth;
   const auto give = [&](std::optional<std::uint64_t> entries) {
-    const std::uint64_t number = ++shared.offered;
+    const std::uint64_t number = ++shared.offers;
     shared.known.push_back({number, scene, kind});
-    if (const auto forgotten = shared.swap.offer({scene, std::move(renderer), number, entries})) {
+    if (const auto forgotten = shared.swap.offer(
+            {scene, std::move(renderer), {number, out.scene, out.goes_on, max_growth}, entries})) {
       std::erase_if(shared.known, [&](const Shared::Known& k) { return k.number == *forgotten; });
     }
     return number;
@@ -261,11 +269,13 @@ void Session::offer(ScenePtr scene, const RendererSettings& settings) {
     const auto snapshot = shared.ask();
     if (!snapshot) break;  // the servo thread does not run, so there is no state to carry over
     // Scenes older than the present one are not needed any more.
-    std::erase_if(shared.known, [&](const Shared::Known& k) { return k.number < snapshot->scene; });
+    std::erase_if(shared.known, [&](const Shared::Known& k) { return k.number < snapshot->offer; });
     const Shared::Known& from = shared.known.front();
-    const CarriedState carried = carryState(snapshot->state, from.kind, *from.scene, *scene);
+    CarriedState carried = carryState(snapshot->state, from.kind, *from.scene, *scene);
     if (!renderer) renderer = makeRenderer(scene, settings);
     const bool is_carried = renderer->setState(carried.state);
+    out.goes_on = is_carried && carried.goes_on;
+    out.lost = std::move(carried.lost);
     // If the hand keeps going in and out, the last attempt uses the state however old it is: the
     // proxy goes on from there.
     const bool is_last = i + 1 == kMostOffers;
@@ -273,10 +283,14 @@ void Session::offer(ScenePtr scene, const RendererSettings& settings) {
         give(is_carried && !is_last ? std::optional(snapshot->entries) : std::nullopt);
     const bool is_handled =
         waitFor([&] { return shared.handled.load(std::memory_order_acquire) >= number; });
-    if (!is_handled || !shared.was_old.load(std::memory_order_acquire)) return;
+    // An offer that was not handled in time may still be put away: it has to be made again.
+    const bool is_taken = is_handled && !shared.was_old.load(std::memory_order_acquire);
+    if (is_taken || is_last) return out;
   }
+  out.goes_on = false;
   if (!renderer) renderer = makeRenderer(scene, settings);
   (void)give({});
+  return out;
 }
 
 void Session::swapScene() noexcept {
@@ -284,21 +298,32 @@ void Session::swapScene() noexcept {
   if (const std::uint64_t asked = shared.asked.load(std::memory_order_acquire);
       asked != shared.answered && ticks_ > 0) {
     shared.answered = asked;
-    shared.snapshot.store({asked, shared.scene, shared.entries, renderer_->state()});
+    shared.snapshot.store({asked, shared.felt.number, shared.entries, renderer_->state()});
   }
-  std::uint64_t number = 0;
-  const SceneSwap::Taken taken = shared.swap.take(scene_, renderer_, shared.entries, number);
+  OfferTag tag;
+  const SceneSwap::Taken taken = shared.swap.take(scene_, renderer_, shared.entries, tag);
   if (taken == SceneSwap::Taken::kNothing) return;
   const bool is_new = taken == SceneSwap::Taken::kNew;
   if (is_new) {
-    shared.scene = number;
+    shared.felt = tag;
+    begins_anew_ = !tag.goes_on;
     swap_fade_ = 0.0;
+    swap_guard_.emplace(
+        ForceLimits{.max_growth = tag.max_growth, .period = 1.0 / settings_.servo.rate});
     next_change_ = settings_.changes.size();
     if (coupling_) coupling_->letGo();
     source_work_ = renderer_->sourceWork();
   }
   shared.was_old.store(!is_new, std::memory_order_release);
-  shared.handled.store(number, std::memory_order_release);
+  shared.handled.store(tag.number, std::memory_order_release);
+}
+
+Vec3 Session::afterSwap(const Vec3& force, double dt) noexcept {
+  if (!swap_guard_) return force;
+  // A fade alone would let the force grow faster than its limit allows.
+  const Vec3 given = swap_guard_->apply(force, dt);
+  if (swap_fade_ >= 1.0 && given == force) swap_guard_.reset();
+  return given;
 }
 
 void Session::changeUntil(double time) noexcept {

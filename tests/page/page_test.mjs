@@ -3,7 +3,7 @@
 // PAGE_FOLDER holds the node_modules that tools/page/build.sh has installed; OUT_FOLDER gets the pictures. NAME: only these tests.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, rmSync } from "node:fs";
+import { existsSync, mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
@@ -339,6 +339,82 @@ const tests = {
     assert.ok(await later.locator("#tour").isHidden());
     await context.close();
     await again.stop();
+  },
+
+  async edits() {
+    const folder = path.join(out, "edited");
+    rmSync(folder, { recursive: true, force: true });
+    mkdirSync(folder, { recursive: true });
+    const file = path.join(folder, "bowl.yaml");
+    const text = (name, more = "") => `palpate: 1
+length: mm
+fields:
+  bowl: {sphere: {center: [0, 0, 0], radius: 40}}
+  brim: {half_space: {point: [0, 0, 15], normal: [0, 0, 1]}}
+materials:
+  glass: {stiffness: 1500 N/m}
+layers:
+${more}  - {name: ${name}, inside: {intersection: [bowl, brim]}, wall: glass}
+ports:
+  - {name: mouth, between: [outside, ${name}], on: brim}
+`;
+    writeFileSync(file, text("liquid"));
+    const served = new Served(file);
+    const first = await open(served);
+    const second = await open(served);
+    const color = (page, name) =>
+      page.evaluate((wanted) => {
+        const row = [...document.querySelectorAll("#layers li")].find((li) => li.querySelector(".name")?.textContent === wanted);
+        return row ? getComputedStyle(row.querySelector(".swatch")).backgroundColor : null;
+      }, name);
+    const before = await color(first, "liquid");
+    assert.ok(before);
+
+    // A layer with a new name, in the color of the second one: there is a shell around it now.
+    const edited = text("juice", "  - {name: shell, inside: {sphere: {center: [0, 0, 0], radius: 45}}}\n");
+    writeFileSync(`${file}~`, edited.replace("outside", "shell"));
+    renameSync(`${file}~`, file);
+    for (const page of [first, second]) {
+      await page.waitForFunction(
+        () => window.palpatePage.words.number === 1 && window.palpatePage.shown === window.palpatePage.words.regions.length,
+      );
+      assert.equal(await color(page, "liquid"), null);
+      assert.notEqual(await color(page, "juice"), before);
+      await page.waitForFunction(() => document.querySelector("#lines").textContent.includes("name: juice"));
+      assert.match(await page.locator("#transitions").textContent(), /shell.*mouth.*juice/);
+      assert.ok(await page.locator("#edit").isHidden());
+    }
+    await picture(first, "edits-felt");
+
+    // What cannot be compiled: the error at its line, and the scene goes on.
+    writeFileSync(file, edited.replace("stiffness: 1500", "stiffnes: 900"));
+    for (const page of [first, second]) {
+      await page.locator("#edit.bad").waitFor();
+      assert.match(await page.locator("#edit").textContent(), /^Line 7: .*stiffnes/);
+      await page.locator("#tab-text").click();
+      assert.deepEqual(await page.locator("#lines li.bad").allTextContents(), ["  glass: {stiffnes: 900 N/m}"]);
+      assert.equal(await page.evaluate(() => window.palpatePage.words.number), 1);
+      const from = (await tick(page)).n;
+      await page.waitForFunction((n) => window.palpatePage.last.tick.n > n + 100, from);
+    }
+    await picture(first, "edits-refused");
+
+    // One that comes now sees the scene that is felt, and what is wrong with the file.
+    const late = await open(served);
+    assert.ok(await color(late, "juice"));
+    await late.locator("#edit.bad").waitFor();
+
+    // Mended.
+    writeFileSync(file, text("water"));
+    for (const page of [first, second, late]) {
+      await page.waitForFunction(() => window.palpatePage.words.number === 2);
+      await page.locator("#edit").waitFor({ state: "hidden" });
+      assert.equal(await color(page, "water"), before);
+      assert.equal(await page.locator("#lines li.bad").count(), 0);
+    }
+    assert.equal(served.err.match(/the scene goes on as it was/g).length, 1, served.err);
+    for (const page of [first, second, late]) await page.context().close();
+    await served.stop();
   },
 
   async head() {

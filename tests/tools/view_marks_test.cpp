@@ -341,7 +341,7 @@ ports:
   LoadedScene loaded(folder.path("scene.yaml"), console);
   const ScenePtr scene = loaded.compile();
   const auto shown = std::make_shared<const ShownScene>(scene, loaded, "", 3);
-  LiveFeed feed(*scene);
+  LiveFeed feed(scene);
   PageDesk desk({.feed = &feed}, shown);
   const PageHost host = desk.host();
   ASSERT_TRUE(testing::waitUntil([&] { return shown->slices() != nullptr; }));

@@ -258,7 +258,10 @@ TEST_F(ViewedRecord, ASceneIsThereInWordsAndSurfaces) {
   const Json json = Json::parse(*answer->bytes);
   EXPECT_EQ(json["number"], 7);
   EXPECT_EQ(json["file"], "cup.yaml");
-  EXPECT_EQ(json["text"], "the text");
+  const auto text = host.get("text.json");
+  ASSERT_TRUE(text);
+  EXPECT_EQ(Json::parse(*text->bytes)["text"], "the text");
+  EXPECT_EQ(Json::parse(*text->bytes)["state"], "felt");
   EXPECT_EQ(json["mode"], "replay");
   EXPECT_EQ(json["rows"], run.size());
   EXPECT_EQ(json["regions"][1]["name"], "liquid");
@@ -278,7 +281,7 @@ TEST_F(ViewedRecord, ASceneIsThereInWordsAndSurfaces) {
 }
 
 TEST_F(ViewedRecord, EveryPageThatLooksSeesThePeakOfTheLastTicks) {
-  LiveFeed feed(*scene_);
+  LiveFeed feed(scene_);
   const auto add = [&](double force) {
     devices::RecordedTick tick;
     tick.tick.result.force = Vec3(force, 0.0, 0.0);
@@ -293,9 +296,9 @@ TEST_F(ViewedRecord, EveryPageThatLooksSeesThePeakOfTheLastTicks) {
 }
 
 TEST_F(ViewedRecord, APageTellsTheHandWhereToGoWithinReason) {
-  LiveFeed feed(*scene_);
+  LiveFeed feed(scene_);
   SteeredHand hand(Vec3(0.0));
-  PageDesk desk({.feed = &feed, .hand = &hand, .mapping = scene_->device()},
+  PageDesk desk({.feed = &feed, .hand = &hand},
                 std::make_shared<const ShownScene>(scene_, loaded_, "", 0));
   const PageHost host = desk.host();
   std::uint64_t seen = 0;

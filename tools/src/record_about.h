@@ -16,8 +16,9 @@ struct RecordAbout {
   std::string version;  ///< of palpate
   std::string build;    ///< devices::stateBuild()
   std::string scene;    ///< absolute path
-  std::string
-      scene_text;  ///< for a mesh, image or grid: the scene as which it was touched; else empty
+  /// For a mesh, image or grid the scene as which it was touched; for `view` the text of the scene,
+  /// whose file may be edited during the session; else empty.
+  std::string scene_text;
   std::string scene_hash;  ///< sceneHash()
   bool shows_all = false;  ///< whether the scene was compiled for Purpose::kShow
   std::string renderer;    ///< "constraint" or "paper"

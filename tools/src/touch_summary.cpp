@@ -6,11 +6,20 @@
 
 namespace palpate::tools {
 
-TouchMeter::TouchMeter(RendererKind kind) {
+TouchMeter::TouchMeter(RendererKind kind) : kind_(kind) {
   if (kind == RendererKind::kConstraint) summary_.unsettled.emplace();
 }
 
 void TouchMeter::add(const devices::RecordedTick& recorded, std::span<const RegionEntry> entries) {
+  if (recorded.tick.scene != scene_) {
+    summary_ = {};
+    if (kind_ == RendererKind::kConstraint) summary_.unsettled.emplace();
+    visit_ = {};
+    has_visit_ = false;
+    first_wall_.reset();
+    times_ = {};
+    scene_ = recorded.tick.scene;
+  }
   const double t = recorded.tick.reading.time;
   const Vec3& hip = recorded.tick.hip.position;
   const TickResult& r = recorded.tick.result;

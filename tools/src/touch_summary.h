@@ -63,7 +63,8 @@ struct TouchSummary {
   double tick_median = 0.0, tick_p99 = 0.0, tick_p999 = 0.0, tick_max = 0.0;  ///< [ns]
 };
 
-/// Sums up ticks as they arrive, in constant memory.
+/// Sums up ticks as they arrive, in constant memory. With the first tick in another scene
+/// (SessionTick::scene) it starts over.
 class TouchMeter final : public devices::RecordSink {
  public:
   explicit TouchMeter(RendererKind kind);
@@ -78,6 +79,8 @@ class TouchMeter final : public devices::RecordSink {
   void pass(double t, const RegionEntry& entry);
   [[nodiscard]] double depthOf(const Vec3& p) const;
 
+  RendererKind kind_;
+  std::uint64_t scene_ = 0;  ///< SessionTick::scene
   TouchSummary summary_;
   Visit visit_;  ///< the present one
   bool has_visit_ = false;

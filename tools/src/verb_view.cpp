@@ -1,7 +1,5 @@
 #include <chrono>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <thread>
 #include <utility>
 
@@ -23,6 +21,8 @@
 #include "view/browser.h"
 #include "view/page_desk.h"
 #include "view/page_files.h"
+#include "view/scene_reloader.h"
+#include "view/scene_watch.h"
 
 namespace palpate::tools {
 namespace {
@@ -39,13 +39,6 @@ void checkPage() {
        "was built",
        "install Node.js 18 or later with npm (Debian: apt-get install npm), and run "
        "tools/run.sh again"});
-}
-
-std::string fileText(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 /// Starts the server, and prints its address.
@@ -76,6 +69,12 @@ std::string pageText(const PageServer& server) {
          formatBytes(counts.bytes) + " sent, " + formatCount(counts.refused) + " refused\n";
 }
 
+/// A line about edits of the scene; empty if there were none.
+std::string editsText(const ReloadCounts& edits) {
+  if (edits.felt == 0) return {};
+  return "Edited " + std::to_string(edits.felt) + " times; all that follows is since the last\n\n";
+}
+
 /// Waits until the user asks to stop, or until `seconds` are over.
 void waitFor(const std::optional<double>& seconds) {
   using Clock = std::chrono::steady_clock;
@@ -88,12 +87,13 @@ void waitFor(const std::optional<double>& seconds) {
 }
 
 Report viewRecorded(const ViewOptions& options, Console& console) {
-  LoadedScene loaded(options.touch.scene, console);
+  const std::string text = SceneWatch(options.touch.scene).first().text.value_or("");
+  LoadedScene loaded(options.touch.scene, console, 0, text);
   const ScenePtr scene = loaded.compile(Purpose::kShow);
   const RecordedRun run(options.replay, *scene);
   PageDesk desk(
       {.run = &run, .about = Json::object({{"device", "as in " + vdb::fileName(options.replay)}})},
-      std::make_shared<const ShownScene>(scene, loaded, fileText(options.touch.scene), 0));
+      std::make_shared<const ShownScene>(scene, loaded, text, 0));
   const auto server = serve(desk, options, console);
   waitFor(options.touch.seconds);
   Report report;
@@ -132,10 +132,16 @@ Report viewSession(const ViewOptions& asked, const GeneralOptions& general, Cons
   OutputFiles files(general);
   announceRecords(files, options, {options.scene});
 
-  LoadedScene loaded(options.scene, console);
-  RendererSettings renderer = rendererSettings(options, loaded.unit());
-  renderer.kind = renderer.kind.value_or(loaded.description().renderer);
-  renderer.limits.period = 1.0 / options.rate;
+  SceneWatch watch(options.scene);
+  const std::string text = watch.first().text.value_or("");
+  LoadedScene loaded(options.scene, console, 0, text);
+  const auto renderer_of = [&options](const LoadedScene& of) {
+    RendererSettings renderer = rendererSettings(options, of.unit());
+    renderer.kind = renderer.kind.value_or(of.description().renderer);
+    renderer.limits.period = 1.0 / options.rate;
+    return renderer;
+  };
+  const RendererSettings renderer = renderer_of(loaded);
   const ScenePtr scene = loaded.compile(Purpose::kShow);
   devices::SessionSettings how{.renderer = renderer};
   how.servo.realtime = true;
@@ -155,32 +161,42 @@ Report viewSession(const ViewOptions& asked, const GeneralOptions& general, Cons
   about.shows_all = true;
   about.renderer = rendererName(*renderer.kind);
   if (!options.record.empty()) {
-    describe(about, options, device.info(), *scene, {});
+    // With its text: the file may be edited while the session lasts.
+    describe(about, options, device.info(), *scene, text);
     about.period = renderer.limits.period;
   }
 
-  LiveFeed feed(*scene);
+  LiveFeed feed(scene);
   PageDesk desk({.feed = &feed,
                  .hand = page_hand ? &page_hand->hand : nullptr,
-                 .mapping = scene->device(),
                  .about = Json::object({{"device", device.info().name}, {"rate", options.rate}})},
-                std::make_shared<const ShownScene>(scene, loaded, fileText(options.scene), 0));
+                std::make_shared<const ShownScene>(scene, loaded, text, 0));
   const auto server = serve(desk, asked, console);
+  const SceneReloader reloader({&session, &feed, &desk},
+                               {.file = options.scene,
+                                .renderer = renderer_of,
+                                .is_recorded = !options.record.empty(),
+                                .quiet = general.quiet},
+                               std::move(watch));
   const TouchRun run = runTouch(session, device, options, about, files, console, false, {&feed});
   checkStop();
   files.commit();
 
   const bool is_paced_by_device = device.info().is_clock;
+  const ReloadCounts edits = reloader.counts();
+  // The summary is of the scene that was felt last, as the feed got it.
+  const ScenePtr last = feed.scene();
   Report report;
   report.json = {{"schema", "palpate.view/1"},
                  {"scene", options.scene},
                  {"renderer", about.renderer},
+                 {"edits", {{"felt", edits.felt}, {"refused", edits.refused}}},
                  {"page", pageJson(*server)}};
-  report.json.update(summaryJson(run.summary, *scene));
+  report.json.update(summaryJson(run.summary, *last));
   report.json["realtime"] = realtimeJson(run.servo, is_paced_by_device);
   report.json["device"] = deviceJson(options.device, options.rate);
   report.json["record"] = options.record.empty() ? Json() : Json(options.record);
-  report.text = summaryText(run.summary, *scene) + deviceText(options.device) +
+  report.text = editsText(edits) + summaryText(run.summary, *last) + deviceText(options.device) +
                 guardsText(guards, session) + realtimeText(run.servo, is_paced_by_device) +
                 pageText(*server);
   if (!options.record.empty()) report.text += "\nRecord   " + options.record + "\n";

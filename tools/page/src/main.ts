@@ -1,6 +1,7 @@
 // The page of `palpate view`.
 
 import "./style.css";
+import { Edits } from "./edits";
 import { Felt } from "./felt";
 import { Layers } from "./layers";
 import { Marks } from "./marks";
@@ -23,6 +24,7 @@ class Page {
   readonly marks = new Marks(this.space);
   readonly slices = new Slices(this.space);
   readonly tour = new Tour(() => this.canvas.focus());
+  readonly edits = new Edits();
   readonly scrubber = new Scrubber((row) => this.line.row(row));
   readonly line: Line;
   readonly steering: Steering;
@@ -105,7 +107,6 @@ class Page {
       this.tour.begin(words);
       this.felt.begin(words);
       this.scrubber.begin(words);
-      this.showText(words.text);
     } catch (error) {
       this.notice(`The scene could not be fetched: ${String(error)}`);
     }
@@ -114,6 +115,7 @@ class Page {
 
   private take(snapshot: Snapshot): void {
     this.last = snapshot;
+    this.edits.take(snapshot.edit);
     const words = this.words;
     if (words === null) return;
     if (snapshot.scene !== words.number) {
@@ -158,16 +160,6 @@ class Page {
     take.textContent = snapshot.steers ? "Let go" : "Steer";
     take.hidden = words.mode === "device";
     take.disabled = !snapshot.steers && snapshot.steered;
-  }
-
-  private showText(text: string): void {
-    byId("lines").replaceChildren(
-      ...text.split("\n").map((line) => {
-        const row = document.createElement("li");
-        row.textContent = line;
-        return row;
-      }),
-    );
   }
 
   private openTab(name: string): void {

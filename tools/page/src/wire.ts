@@ -27,7 +27,6 @@ export interface SceneWords {
   regions: RegionWords[];
   ports: string[];
   transitions: TransitionRow[];
-  text: string;
   mode: "hand" | "device" | "replay";
   device: string;
   rate?: number;
@@ -73,8 +72,19 @@ export interface Tick {
   entries: Entry[];
 }
 
+/** What the scene's file holds, and what became of it. */
+export interface SceneText {
+  edit: number;
+  state: "felt" | "compiling" | "refused" | "recorded";
+  text: string;
+  line: number | null; // of the problem, from 1
+  problem: string | null;
+  hint: string | null;
+}
+
 export interface Snapshot {
   scene: number;
+  edit: number; // counts changes of SceneText
   surfaces: number;
   ports: boolean; // that on surfaces are known
   slices: boolean; // of a scan are there
@@ -96,6 +106,12 @@ export async function fetchScene(): Promise<SceneWords> {
   const answer = await fetch("scene.json");
   if (!answer.ok) throw new Error(await answer.text());
   return (await answer.json()) as SceneWords;
+}
+
+export async function fetchText(): Promise<SceneText> {
+  const answer = await fetch("text.json");
+  if (!answer.ok) throw new Error(await answer.text());
+  return (await answer.json()) as SceneText;
 }
 
 /** Null for a region without a surface. */

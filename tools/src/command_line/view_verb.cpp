@@ -42,7 +42,9 @@ Verb viewVerb() {
       R"(Serves a page at 127.0.0.1 and prints its address, which nobody can guess; it works offline. The
 page's hand goes where the mouse (drag; the wheel for depth), the arrow keys or a gamepad say, and
 holds a simulated device, so that the force draws it back: a mouse cannot feel. One page steers,
-others watch. The loop runs at 1 kHz whatever the page does. Ends with Ctrl-C, as touch does.)",
+others watch. The loop runs at 1 kHz whatever the page does. A scene that is edited meanwhile is felt
+and shown as soon as it is saved, and the page marks the line of a fault, while the scene
+before goes on; not with --record or --replay. Ends with Ctrl-C, as touch does.)",
       {},
       defineView,
       [](const Invocation& i) {

@@ -5,8 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <iterator>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "palpate/devices/record.h"
@@ -29,6 +32,14 @@ class PassedCounts {
  public:
   explicit PassedCounts(const Scene& scene)
       : counts_(scene.ports().size(), 0), keeps_(scene.keepsMemory()) {}
+  /// Those of `before`, a count of `from`, by the names that ports have in `to`.
+  PassedCounts(const PassedCounts& before, const Scene& from, const Scene& to) : PassedCounts(to) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+      for (std::size_t k = 0; k < before.counts_.size(); ++k) {
+        if (from.ports()[k].name == to.ports()[i].name) counts_[i] = before.counts_[k];
+      }
+    }
+  }
 
   void add(const RegionEntry& entry) {
     const auto port = static_cast<std::size_t>(entry.port);
@@ -45,6 +56,8 @@ class PassedCounts {
 /// The last tick, and the events since the session began.
 struct FeedView {
   std::uint64_t ticks = 0;  ///< so far; if 0, the other members mean nothing
+  std::uint64_t scene =
+      0;  ///< SessionTick::scene, to which the numbers of regions and ports belong
   std::uint64_t number = 0;
   double time = 0.0;  ///< [s]
   Vec3 hip{0.0, 0.0, 0.0};
@@ -67,11 +80,23 @@ class LiveFeed final : public devices::RecordSink {
   static constexpr std::size_t kKept = 512;  ///< entries
   static constexpr std::size_t kLast = 128;  ///< ticks over which look() takes the largest values
 
-  explicit LiveFeed(const Scene& scene) : passed_(scene), marks_(scene) {}
+  explicit LiveFeed(ScenePtr scene) : scene_(std::move(scene)), passed_(*scene_), marks_(*scene_) {}
+
+  /// Announces the scene with this number; to be called before its first tick.
+  void expect(std::uint64_t number, ScenePtr scene) {
+    const std::lock_guard lock(mutex_);
+    coming_[number] = std::move(scene);
+  }
+  /// The scene of the last tick.
+  [[nodiscard]] ScenePtr scene() const {
+    const std::lock_guard lock(mutex_);
+    return scene_;
+  }
 
   void add(const devices::RecordedTick& tick, std::span<const RegionEntry> entries) override {
     const std::lock_guard lock(mutex_);
     const devices::SessionTick& now = tick.tick;
+    if (now.scene != view_.scene) goTo(now);
     const Vec3& hip = now.hip.position;
     if (isFinite(hip)) {
       // The force of a tick is held until the next one.
@@ -117,9 +142,24 @@ class LiveFeed final : public devices::RecordSink {
     double force = 0.0;  ///< [N]
   };
 
+  void goTo(const devices::SessionTick& tick) {
+    view_.scene = tick.scene;
+    const auto at = coming_.find(tick.scene);
+    if (at == coming_.end()) return;
+    const ScenePtr to = at->second;
+    passed_ = tick.begins_anew ? PassedCounts(*to) : PassedCounts(passed_, *scene_, *to);
+    marks_ = tick.begins_anew ? SeenMarks(*to) : SeenMarks(marks_, *scene_, *to);
+    scene_ = to;
+    // Their numbers are of regions and ports as they were before.
+    entries_.clear();
+    coming_.erase(coming_.begin(), std::next(at));
+  }
+
   mutable std::mutex mutex_;
   FeedView view_;
-  std::array<LastTick, kLast> last_{};  ///< a ring: the newest tick replaces the oldest
+  ScenePtr scene_;
+  std::map<std::uint64_t, ScenePtr> coming_;  ///< that were offered, by number
+  std::array<LastTick, kLast> last_{};        ///< a ring: the newest tick replaces the oldest
   PassedCounts passed_;
   SeenMarks marks_;
   std::deque<SeenEntry> entries_;

@@ -65,36 +65,29 @@ Json holesJson(const std::vector<SeenHole>& holes) {
   return list;
 }
 
-/// What of `scene` stands at `path`, which begins with the scene's number: "surface/NUMBER/REGION",
-/// "port/NUMBER/PORT", "slices/NUMBER" and "slice/NUMBER/AXIS/INDEX".
-std::optional<PageAnswer> partOf(const ShownScene& scene, std::string_view path) {
-  const std::size_t slash = path.find('/');
-  if (slash == std::string_view::npos) return std::nullopt;
-  const std::string_view kind = path.substr(0, slash);
-  path.remove_prefix(slash + 1);
-  const auto scene_number = numberIn(path, kind == "slices" ? '\0' : '/');
-  if (!scene_number || *scene_number != static_cast<std::size_t>(scene.number()))
-    return std::nullopt;
-  const auto slices = scene.slices();
-  if (kind == "slices") return slices ? std::optional(jsonAnswer(slices->json())) : std::nullopt;
-  std::shared_ptr<const std::string> bytes;
-  if (kind == "slice") {
-    const auto axis = numberIn(path, '/');
-    const auto index = numberIn(path, '\0');
-    auto slice = slices && axis && index ? slices->slice(*axis, *index) : std::nullopt;
-    if (slice) bytes = std::make_shared<const std::string>(std::move(*slice));
-  } else if (kind == "surface" || kind == "port") {
-    const auto which = numberIn(path, '\0');
-    if (which) bytes = kind == "port" ? scene.port(*which) : scene.surface(*which);
+const char* stateName(SceneEdit::State state) {
+  switch (state) {
+    case SceneEdit::State::kFelt:
+      return "felt";
+    case SceneEdit::State::kCompiling:
+      return "compiling";
+    case SceneEdit::State::kRefused:
+      return "refused";
+    case SceneEdit::State::kRecorded:
+      break;
   }
-  if (!bytes) return std::nullopt;
-  return PageAnswer{"application/octet-stream", std::move(bytes)};
+  return "recorded";
 }
 
 }  // namespace
 
 PageDesk::PageDesk(PageSubject subject, std::shared_ptr<const ShownScene> shown)
-    : subject_(std::move(subject)), told_(handStart(shown->scene())), shown_(std::move(shown)) {}
+    : subject_(std::move(subject)),
+      told_(handStart(shown->scene())),
+      told_in_(shown->number()),
+      shown_(std::move(shown)) {
+  edit_.text = shown_->text();
+}
 
 PageHost PageDesk::host() {
   return {.get = [this](std::string_view path) { return get(path); },
@@ -108,10 +101,84 @@ std::shared_ptr<const ShownScene> PageDesk::shown() const {
   return shown_;
 }
 
+std::shared_ptr<const ShownScene> PageDesk::goTo(std::uint64_t number) {
+  const std::lock_guard lock(mutex_);
+  for (auto& other : others_) {
+    if (static_cast<std::uint64_t>(other->number()) != number) continue;
+    if (other->number() < shown_->number()) return other;
+    // The one before is freed by forgetPast(), not here: its thread may have to end first.
+    std::swap(other, shown_);
+    break;
+  }
+  return shown_;
+}
+
+void PageDesk::expect(std::shared_ptr<const ShownScene> shown) {
+  std::shared_ptr<const ShownScene> replaced;
+  const std::lock_guard lock(mutex_);
+  // One that was refused after all had the same number.
+  for (auto& other : others_) {
+    if (other->number() == shown->number()) replaced = std::move(other);
+  }
+  std::erase(others_, nullptr);
+  others_.push_back(std::move(shown));
+}
+
+void PageDesk::edited(SceneEdit edit) {
+  const std::lock_guard lock(mutex_);
+  edit_ = std::move(edit);
+  ++edits_;
+}
+
+void PageDesk::forgetPast() {
+  // No page need be there to follow the loop.
+  (void)goTo(subject_.feed->look(0).scene);
+  std::vector<std::shared_ptr<const ShownScene>> past;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& other : others_) {
+      // One that an answer still needs goes another time. Nobody gets it meanwhile.
+      const bool is_past = other->number() < shown_->number() && other.use_count() == 1;
+      if (is_past) past.push_back(std::move(other));
+    }
+    std::erase(others_, nullptr);
+  }
+}
+
+std::string PageDesk::sceneText() const {
+  const std::lock_guard lock(mutex_);
+  Json json = {{"edit", edits_},     {"state", stateName(edit_.state)},
+               {"text", edit_.text}, {"line", edit_.line > 0 ? Json(edit_.line) : Json()},
+               {"problem", Json()},  {"hint", Json()}};
+  if (edit_.problem) {
+    json["problem"] = edit_.problem->message;
+    // A fault in another file needs that file's name.
+    if (edit_.line == 0 && !edit_.problem->file.empty()) {
+      json["problem"] = edit_.problem->file + ": " + edit_.problem->message;
+    }
+    json["hint"] = edit_.problem->hint;
+  }
+  return textOf(json);
+}
+
+std::shared_ptr<const ShownScene> PageDesk::numbered(std::size_t number) const {
+  const std::lock_guard lock(mutex_);
+  const auto is_it = [&](const auto& scene) {
+    return static_cast<std::size_t>(scene->number()) == number;
+  };
+  if (is_it(shown_)) return shown_;
+  const auto at = std::find_if(others_.begin(), others_.end(), is_it);
+  return at == others_.end() ? nullptr : *at;
+}
+
+std::uint64_t PageDesk::edits() const {
+  const std::lock_guard lock(mutex_);
+  return edits_;
+}
+
 std::optional<PageAnswer> PageDesk::get(std::string_view path) {
-  const auto scene = shown();
   if (path == "scene.json") {
-    Json json = scene->json();
+    Json json = shown()->json();
     if (!subject_.about.is_null()) json.update(subject_.about);
     json["mode"] = subject_.run != nullptr    ? "replay"
                    : subject_.hand != nullptr ? "hand"
@@ -120,18 +187,51 @@ std::optional<PageAnswer> PageDesk::get(std::string_view path) {
     if (subject_.run != nullptr) json["overview"] = subject_.run->overview(kColumns);
     return jsonAnswer(json);
   }
-  return partOf(*scene, path);
+  if (path == "text.json") {
+    return PageAnswer{"application/json", std::make_shared<const std::string>(sceneText())};
+  }
+  return partOf(path);
+}
+
+std::optional<PageAnswer> PageDesk::partOf(std::string_view path) const {
+  const std::size_t slash = path.find('/');
+  if (slash == std::string_view::npos) return std::nullopt;
+  const std::string_view kind = path.substr(0, slash);
+  path.remove_prefix(slash + 1);
+  const auto number = numberIn(path, kind == "slices" ? '\0' : '/');
+  const auto scene = number ? numbered(*number) : nullptr;
+  if (!scene) return std::nullopt;
+  const auto slices = scene->slices();
+  if (kind == "slices") return slices ? std::optional(jsonAnswer(slices->json())) : std::nullopt;
+  std::shared_ptr<const std::string> bytes;
+  if (kind == "slice") {
+    const auto axis = numberIn(path, '/');
+    const auto index = numberIn(path, '\0');
+    auto slice = slices && axis && index ? slices->slice(*axis, *index) : std::nullopt;
+    if (slice) bytes = std::make_shared<const std::string>(std::move(*slice));
+  } else if (kind == "surface" || kind == "port") {
+    const auto which = numberIn(path, '\0');
+    if (which) bytes = kind == "port" ? scene->port(*which) : scene->surface(*which);
+  }
+  if (!bytes) return std::nullopt;
+  return PageAnswer{"application/octet-stream", std::move(bytes)};
 }
 
 std::string PageDesk::snapshot(std::uint64_t& seen, const PagePlace& place) {
-  const auto scene = shown();
-  Json json = {{"scene", scene->number()},    {"surfaces", scene->surfacesDone()},
-               {"ports", scene->portsDone()}, {"slices", scene->slices() != nullptr},
-               {"steers", place.steers},      {"steered", place.is_steered},
-               {"pages", place.pages}};
   // A page that goes back in a record gets all of its past each time.
   const FeedView view =
       subject_.run != nullptr ? subject_.run->at(row_, 0) : subject_.feed->look(seen);
+  const auto scene = subject_.run != nullptr ? shown() : goTo(view.scene);
+  // The mapping of the device may be another one in a new scene.
+  if (subject_.hand != nullptr && scene->number() != told_in_) steer(told_);
+  Json json = {{"scene", scene->number()},
+               {"edit", edits()},
+               {"surfaces", scene->surfacesDone()},
+               {"ports", scene->portsDone()},
+               {"slices", scene->slices() != nullptr},
+               {"steers", place.steers},
+               {"steered", place.is_steered},
+               {"pages", place.pages}};
   if (subject_.run != nullptr) json["row"] = row_;
   if (view.ticks == 0) return textOf(json);
   if (!view.entries.empty()) seen = view.entries.back().number;
@@ -173,10 +273,12 @@ void PageDesk::command(const std::string& message) {
 
 void PageDesk::steer(const Vec3& place) {
   if (subject_.hand == nullptr) return;
-  const Box3 view = viewBox(shown()->scene());
+  const auto scene = shown();
+  const Box3 view = viewBox(scene->scene());
   const Box3 room = view.grownBy(glm::length(view.size()));
   told_ = glm::clamp(place, room.lo, room.hi);
-  subject_.hand->steer(toDevice(subject_.mapping, told_));
+  told_in_ = scene->number();
+  subject_.hand->steer(toDevice(scene->scene().device(), told_));
 }
 
 }  // namespace palpate::tools

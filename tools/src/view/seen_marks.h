@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "palpate/interior/punctures.h"
@@ -30,6 +31,30 @@ class SeenMarks {
       const Material* material = region.content < 0 ? nullptr : &scene.materials()[content];
       holds_.push_back(material != nullptr &&
                        (material->shaft.stiffness > 0.0 || material->cutting.range().most > 0.0));
+    }
+  }
+
+  /// Those of `before`, seen in `from`, by the names that ports and regions have in `to`: holes of
+  /// ports that are gone are left out, and so is the shaft's way from a region on that is gone.
+  SeenMarks(const SeenMarks& before, const Scene& from, const Scene& to) : SeenMarks(to) {
+    const auto named = [](const auto& all, const std::string& name) {
+      const auto at =
+          std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.name == name; });
+      return at == all.end() ? -1 : static_cast<int>(at - all.begin());
+    };
+    for (SeenHole hole : before.holes_) {
+      const int port = named(to.ports(), from.ports()[hole.port].name);
+      if (port < 0) continue;
+      hole.port = static_cast<PortId>(port);
+      holes_.push_back(hole);
+    }
+    for (RegionEntry step : before.way_) {
+      const int outer = named(to.regions(), from.regions()[step.from].name);
+      const int inner = named(to.regions(), from.regions()[step.to].name);
+      if (outer < 0 || inner < 0) break;
+      step.from = static_cast<RegionId>(outer);
+      step.to = static_cast<RegionId>(inner);
+      way_.push_back(step);
     }
   }
 

@@ -128,6 +128,7 @@ FeltWords feltAt(const Scene& scene, const Vec3& hip, const TickResult& result) 
 ShownScene::ShownScene(ScenePtr scene, const LoadedScene& loaded, std::string text, int number)
     : scene_(std::move(scene)),
       number_(number),
+      text_(std::move(text)),
       images_(loaded.images()),
       surfaces_(scene_->regions().size()),
       ports_(scene_->ports().size()) {
@@ -141,8 +142,7 @@ ShownScene::ShownScene(ScenePtr scene, const LoadedScene& loaded, std::string te
            {"start_region", scene_->startRegion()},
            {"regions", regionsJson(*scene_, loaded)},
            {"ports", Json::array()},
-           {"transitions", transitionsJson(*scene_, description)},
-           {"text", std::move(text)}};
+           {"transitions", transitionsJson(*scene_, description)}};
   for (const Port& port : scene_->ports()) json_["ports"].push_back(port.name);
   thread_ = std::thread([this] { make(); });
 }

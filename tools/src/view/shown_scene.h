@@ -49,6 +49,7 @@ class ShownScene {
   [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
   [[nodiscard]] int number() const noexcept { return number_; }
   [[nodiscard]] const Json& json() const noexcept { return json_; }
+  [[nodiscard]] const std::string& text() const noexcept { return text_; }
   /// Null if it is not made yet, or if there is none.
   [[nodiscard]] std::shared_ptr<const std::string> surface(std::size_t region) const;
   /// How many regions are done so far, in their order.
@@ -75,6 +76,7 @@ class ShownScene {
 
   ScenePtr scene_;
   int number_;
+  std::string text_;
   Json json_;
   std::vector<SceneImage> images_;
   mutable std::mutex mutex_;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "palpate/devices/velocity.h"
 #include "palpate/devices/virtual_coupling.h"
 #include "palpate/export.h"
+#include "palpate/render/force_guard.h"
 #include "palpate/render/haptic_renderer.h"
 
 namespace palpate::devices {
@@ -131,6 +133,18 @@ struct SessionTick {
   std::int64_t renderer_ns = 0;   ///< [ns] of the renderer's update alone
   bool is_held = false;           ///< the clutch is held
   bool is_checkpoint = false;     ///< Session::checkpoint() is the state before this tick
+  /// Number of the present scene: 0 is the first one, n the one of the n-th Session::offer().
+  std::uint64_t scene = 0;
+  /// This is the first tick in a new scene that could not take over the state of the probe: the
+  /// probe begins as in a new session.
+  bool begins_anew = false;
+};
+
+/// The result of Session::offer().
+struct SceneOffer {
+  std::uint64_t scene = 0;             ///< SessionTick::scene of the ticks in the new scene
+  bool goes_on = false;                ///< CarriedState::goes_on
+  std::vector<std::string> lost = {};  ///< CarriedState::lost
 };
 
 /// The part of a session that another thread may see while it runs.
@@ -197,11 +211,13 @@ class PALPATE_EXPORT Session {
   /// From any thread: the hand goes on in another scene, with a renderer that is made here in this
   /// call. While the servo thread runs, the present state is carried over by names (carryState()),
   /// up to the last region that the probe entered. The scene changes between two ticks; the force
-  /// begins at zero and comes back within kSwapFade. A scene that was offered earlier and not yet
-  /// taken is dropped. Timed changes of contents do not apply in the new scene, and a record does
-  /// not contain the swap. Passivity and coupling keep their first settings. Waits for the servo
-  /// thread, at most a second. One thread at a time. @throws Error (kInput) as makeRenderer().
-  void offer(ScenePtr scene, const RendererSettings& settings);
+  /// begins at zero and comes back within kSwapFade, or later if the limits of `settings` or of the
+  /// scene hold its growth back. A scene that was offered earlier and not yet taken is dropped.
+  /// Timed changes of contents do not apply in the new scene, and a record does not contain the
+  /// swap. Passivity and coupling keep their first settings. Waits for the servo thread, about a
+  /// second at most. One thread at a time; a call that throws is not counted in SceneOffer::scene.
+  /// @throws Error (kInput) as makeRenderer().
+  SceneOffer offer(ScenePtr scene, const RendererSettings& settings);
   /// From any thread: the last tick. No value before the first.
   [[nodiscard]] std::optional<SessionView> view() const noexcept;
   static constexpr double kSwapFade = 0.1;  ///< [s]
@@ -221,6 +237,8 @@ class PALPATE_EXPORT Session {
 
   /// Switches to the scene that was offered, if there is one.
   void swapScene() noexcept;
+  /// The part of `force` [N, world] that the hand gets, which after a swap grows slowly.
+  [[nodiscard]] Vec3 afterSwap(const Vec3& force, double dt) noexcept;
 
   std::unique_ptr<Shared> shared_;
   ScenePtr scene_;
@@ -247,6 +265,10 @@ class PALPATE_EXPORT Session {
   std::size_t next_change_ = 0;
   bool has_begun_ = false;
   double swap_fade_ = 1.0;  ///< [-] share of the force since the scene was swapped
+  /// Limits the growth of the force after a swap; no value once the whole force is back.
+  std::optional<ForceGuard> swap_guard_;
+  /// SessionTick::begins_anew of the next tick.
+  bool begins_anew_ = false;
   double last_time_ = 0.0;
   SessionState checkpoint_;
   std::vector<BudgetItem> over_budget_;

@@ -12,12 +12,20 @@
 
 namespace palpate::devices {
 
+/// Data of an offer that the servo thread needs when it takes the scene.
+struct OfferTag {
+  std::uint64_t number = 0;  ///< of the offer, counted from 1; a scene may be offered several times
+  std::uint64_t scene = 0;   ///< SessionTick::scene
+  bool goes_on = false;      ///< SceneOffer::goes_on
+  double max_growth = kInfinity;  ///< [N/s] limit of the force in this scene
+};
+
 /// A scene and its renderer on their way to the servo thread, and the state that the offer is based
 /// on.
 struct OfferedScene {
   ScenePtr scene;
   std::unique_ptr<HapticRenderer> renderer;
-  std::uint64_t number = 0;  ///< of the scene, counted from 1
+  OfferTag tag = {};
   /// The number of regions that the probe had entered when the renderer's state was taken; no value
   /// if it has no earlier state.
   std::optional<std::uint64_t> entries = {};
@@ -41,7 +49,7 @@ class SceneSwap {
     delete retired_.exchange(nullptr, std::memory_order_acq_rel);
     const std::unique_ptr<OfferedScene> forgotten(
         offered_.exchange(made.release(), std::memory_order_acq_rel));
-    return forgotten ? std::optional(forgotten->number) : std::nullopt;
+    return forgotten ? std::optional(forgotten->tag.number) : std::nullopt;
   }
 
   enum class Taken { kNothing, kOld, kNew };
@@ -49,7 +57,7 @@ class SceneSwap {
   /// the other thread frees later. kOld: the offer is based on a state from before the last of
   /// `entries` regions, and was put away.
   [[nodiscard]] Taken take(ScenePtr& scene, std::unique_ptr<HapticRenderer>& renderer,
-                           std::uint64_t entries, std::uint64_t& number) noexcept {
+                           std::uint64_t entries, OfferTag& tag) noexcept {
     // A scene is taken only if there is room to put the old one away.
     if (offered_.load(std::memory_order_relaxed) == nullptr ||
         retired_.load(std::memory_order_acquire) != nullptr) {
@@ -58,7 +66,7 @@ class SceneSwap {
     OfferedScene* offered = offered_.exchange(nullptr, std::memory_order_acq_rel);
     if (offered == nullptr) return Taken::kNothing;
     const bool is_old = offered->entries && *offered->entries != entries;
-    number = offered->number;
+    tag = offered->tag;
     if (!is_old) {
       std::swap(scene, offered->scene);
       std::swap(renderer, offered->renderer);
