@@ -1,6 +1,11 @@
 // palpate pack: a scene with its grids in one folder, which feels the same at another place and
 // without its scan.
 
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
 #include "tools/kept_felt.h"
 
 namespace palpate::testing {
@@ -133,6 +138,93 @@ ports:
   const Felt after = feltIn(elsewhere, "all", "a.csv");
   ASSERT_EQ(after.result.exit_code, 0) << after.result.err << after.result.out;
   EXPECT_EQ(after.ticks, before.ticks);
+}
+
+/// What a scene answers at some points: in both meshes, in bone and flesh, and far from all.
+std::string answersOf(const TempFolder& folder, const std::string& scene) {
+  const CommandResult result =
+      runPalpate({"query", scene, "--at", "60,0,0", "61.9,0,0", "80,1,0", "12,-7,30", "20,-7,30",
+                  "200,0,0", "--quiet", "--no-cache"},
+                 folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+  for (const char* region : {"bone", "flesh", "one", "two", "outside"}) {
+    EXPECT_NE(result.out.find(region), std::string::npos) << region << ": " << result.out;
+  }
+  return result.out;
+}
+
+TEST(PackedScenes, TakeBuffersOfMeshesAndFoldersOfMasksAlong) {
+  const TempFolder folder;
+  const vdb::test::Limb limb;
+  fs::create_directories(folder.path("masks"));
+  fs::create_directories(folder.path("in/buffers"));
+  const vdb::Image labels = limb.labels(vdb::test::obliqueAxes(Vec3(2.0)));
+  for (const auto& [label, name] :
+       {std::pair(1.0F, "bone"), std::pair(2.0F, "muscle"), std::pair(3.0F, "fat")}) {
+    vdb::Image mask = labels;
+    for (float& value : mask.values) value = value == label ? 1.0F : 0.0F;
+    (void)vdb::test::writeNifti(mask, folder, std::string("masks/") + name + ".nii.gz");
+  }
+  // A mesh whose numbers lie in a file of their own, and one that names a file of colors.
+  const std::array<std::uint16_t, 24> faces = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
+                                               2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+  const std::array<float, 18> corners = {0.003F,  0, 0, -0.003F, 0,      0, 0, 0.003F, 0, 0,
+                                         -0.003F, 0, 0, 0,       0.003F, 0, 0, -0.003F};
+  std::string bytes(sizeof faces + sizeof corners, '\0');
+  std::memcpy(bytes.data(), faces.data(), sizeof faces);
+  std::memcpy(bytes.data() + sizeof faces, corners.data(), sizeof corners);
+  (void)folder.file("in/buffers/stone.bin", bytes);
+  const std::string gltf =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0}]}],)"
+      R"("buffers":[{"byteLength":120,"uri":"buffers/stone.bin"}],)"
+      R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},)"
+      R"({"buffer":0,"byteOffset":48,"byteLength":72}],"accessors":[)"
+      R"({"bufferView":0,"componentType":5123,"count":24,"type":"SCALAR"},)"
+      R"({"bufferView":1,"componentType":5126,"count":6,"type":"VEC3",)"
+      R"("min":[-0.003,-0.003,-0.003],"max":[0.003,0.003,0.003]}]})";
+  (void)folder.file("in/stone.gltf", gltf);
+  (void)folder.file("in/colored.obj",
+                    "mtllib colored.mtl\nv 3 0 0\nv -3 0 0\nv 0 3 0\nv 0 -3 0\nv 0 0 3\nv 0 0 -3\n"
+                    "usemtl red\nf 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\n"
+                    "f 1 4 6\n");
+  (void)folder.file("in/colored.mtl", "newmtl red\nKd 1 0 0\n");
+  (void)folder.file("all.yaml", R"(palpate: 1
+length: mm
+images:
+  seg: {file: masks/}
+materials:
+  plain: {stiffness: 500 N/m}
+layers:
+  - {name: bone, labels: {image: seg, match: [bone]}, wall: plain}
+  - {name: flesh, labels: {image: seg, match: [muscle, fat]}, wall: plain}
+  - {name: one, inside: {transform: {field: {mesh: {file: in/stone.gltf, voxel: 0.5}}, translate: [60, 0, 0]}}, wall: plain}
+  - {name: two, inside: {transform: {field: {mesh: {file: in/colored.obj, voxel: 0.5}}, translate: [80, 0, 0]}}, wall: plain}
+)");
+  const std::string before = answersOf(folder, "all.yaml");
+  const CommandResult packed = pack(folder, {"all.yaml", "-o", "all"});
+  ASSERT_EQ(packed.exit_code, 0) << packed.err << packed.out;
+  EXPECT_NE(packed.out.find("masks: not in it"), std::string::npos) << packed.out;
+  const TempFolder elsewhere;
+  fs::rename(folder.path("all"), elsewhere.path("all"));
+  for (const char* gone : {"in", "masks"}) fs::remove_all(folder.path(gone));
+  EXPECT_EQ(answersOf(elsewhere, "all"), before);
+  const std::vector<std::string> files = allFiles(elsewhere.path("all/files"));
+  EXPECT_NE(std::find(files.begin(), files.end(), "mesh_1/buffers/stone.bin"), files.end());
+
+  // What lies elsewhere, or nowhere, cannot be taken along under its name.
+  fs::create_directories(folder.path("in"));
+  (void)folder.file("stone.bin", bytes);
+  std::string other = gltf;
+  other.replace(other.find("buffers/stone.bin"), 17, "../stone.bin");
+  (void)folder.file("in/stone.gltf", other);
+  (void)folder.file("one.yaml",
+                    "palpate: 1\nlength: mm\nlayers:\n"
+                    "  - {name: one, inside: {mesh: {file: in/stone.gltf, voxel: 0.5}}}\n");
+  const CommandResult refused = pack(folder, {"one.yaml", "-o", "one"});
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  EXPECT_NE(refused.err.find("another folder than its own"), std::string::npos) << refused.err;
+  EXPECT_FALSE(fs::exists(folder.path("one")));
 }
 
 TEST(PackedScenes, SayWhatTheyDoNotHold) {

@@ -15,10 +15,10 @@
 #include "keep/making_lock.h"
 #include "keep/seal.h"
 #include "keep/source_state.h"
-#include "mesh/gltf_guard.h"
 #include "palpate/fields/primitives.h"
 #include "palpate/vdb/bake.h"
 #include "palpate/vdb/certificate.h"
+#include "palpate/vdb/kept_grids.h"
 #include "scene_image.h"
 #include "support/temp_file.h"
 #include "vdb/made_scans.h"
@@ -154,16 +154,38 @@ TEST(ImageFiles, WhoseVoxelsAreOfAnotherFileHaveNoKey) {
   EXPECT_FALSE(other.state().isKnown());
 }
 
-TEST(GltfGuard, KnowsWhoseBuffersLieElsewhere) {
+TEST(MeshFiles, AreTheMeshAndTheBuffersThatItNames) {
   const palpate::testing::TempFolder folder;
-  const auto names = [&](const char* name, const std::string& text) {
-    return namesOtherFiles(folder.file(name, text));
+  (void)folder.file("a.bin", "1234");
+  std::filesystem::create_directory(folder.path("more"));
+  (void)folder.file("more/b \"1\".bin", "1234");
+  using Names = std::vector<std::string>;
+  const auto files = [&](const char* name, const std::string& text) {
+    Names all;
+    for (const std::string& file : meshFiles(folder.file(name, text))) {
+      all.push_back(std::filesystem::path(file).lexically_relative(folder.path()).string());
+    }
+    return all;
   };
-  EXPECT_TRUE(names("a.gltf", R"({"buffers": [{"byteLength": 4, "uri" : "a.bin"}]})"));
-  EXPECT_TRUE(names("b.GLTF", R"({"buffers":[{"uri":"data:,AA"},{"uri":"b.bin"}]})"));
-  EXPECT_FALSE(
-      names("c.gltf", R"({"buffers":[{"uri":"data:application/octet-stream;base64,A"}]})"));
-  EXPECT_FALSE(names("d.obj", R"("uri": "d.bin")"));
+  EXPECT_EQ(files("a.gltf", R"({"buffers": [{"byteLength": 4, "uri" : "a.bin"}]})"),
+            (Names{"a.gltf", "a.bin"}));
+  EXPECT_EQ(files("b.GLTF", R"({"nodes":[{"buffers":[{"uri":"c.bin"}]}],"images":[{"uri":"t.png"}],
+      "buffers":[{"uri":"data:,AA"},{"extras":{"uri":"d.bin"},"uri":"more\/b \"1\".bin"},
+      {"uri":"a.bin","name":"uri"},{"uri":"a.bin"}],"asset":{"uri":"e.bin"}})"),
+            (Names{"b.GLTF", "more/b \"1\".bin", "a.bin"}));
+  EXPECT_EQ(files("c.gltf", R"({"buffers":[{"uri":"data:application/octet-stream;base64,A"}]})"),
+            (Names{"c.gltf"}));
+  EXPECT_EQ(files("c.obj", R"("buffers":[{"uri": "a.bin"}])"), (Names{"c.obj"}));
+  const std::string json = R"({"buffers":[{"uri":"a.bin"}]})";
+  const std::string head = std::string("glTF\2\0\0\0\0\0\0\0\0\0\0\0JSON", 20);
+  EXPECT_EQ(files("a.glb", head + json + R"({"buffers":[{"uri":"other.bin"}]})"),
+            (Names{"a.glb", "a.bin"}));
+  EXPECT_EQ(files("b.glb", "glTF"), (Names{"b.glb"}));
+  // What cannot be found is not known; what is cut short is not followed beyond its end.
+  EXPECT_EQ(files("d.gltf", R"({"buffers":[{"uri":"gone.bin"}]})"), Names{});
+  EXPECT_EQ(files("e.gltf", R"({"buffers":[{"uri":"https://host/a.bin"}]})"), Names{});
+  EXPECT_EQ(files("f.gltf", R"({"buffers":[{"uri":"a.bin\)"), Names{});
+  EXPECT_EQ(files("g.gltf", R"({"buffers":[{"uri")"), (Names{"g.gltf"}));
 }
 
 TEST(MakingLocks, BelongToOneAtATime) {

@@ -113,10 +113,11 @@ class Files {
         bundle_(std::move(bundle)) {}
 
   std::string name(Named what, const std::string& text, const std::string& image) {
-    const fs::path file = from_ / text;
+    fs::path file = from_ / text;
+    if (!file.has_filename()) file = file.parent_path();  // a folder may end with a slash
     if (what == Named::kFile) {
       std::string& known = copied_[file.lexically_normal().string()];
-      if (known.empty()) known = copy(file, "", "file");
+      if (known.empty()) known = copyFile(file);
       return known;
     }
     std::string& known = scans_[{image, file.lexically_normal().string()}];
@@ -156,6 +157,29 @@ class Files {
     std::string now = (fs::path(kBundleFiles) / folder / name).lexically_normal().string();
     tell(role, file, now);
     return now;
+  }
+
+  /// A mesh whose buffers lie beside it keeps them where it names them, in a folder of its own.
+  std::string copyFile(const fs::path& file) {
+    const std::vector<std::string> all = vdb::meshFiles(file.string());
+    if (all.empty()) {
+      throw inputError("pack.unreadable", "not all files that it names are there",
+                       "export the mesh again, as GLB in one file for one", file.string());
+    }
+    if (all.size() == 1) return copy(file, "", "file");
+    const std::string folder = "mesh_" + std::to_string(++mesh_folders_);
+    const fs::path beside = file.parent_path().empty() ? "." : file.parent_path();
+    for (std::size_t i = 1; i < all.size(); ++i) {
+      const fs::path name =
+          fs::path(all[i]).lexically_normal().lexically_relative(beside.lexically_normal());
+      if (name.empty() || *name.begin() == "..") {
+        throw inputError("pack.layout", "this mesh names a file in another folder than its own",
+                         "put them into one folder, or export it as GLB", all[i]);
+      }
+      static_cast<void>(
+          copy(all[i], (fs::path(folder) / name.parent_path()).string(), "buffer of a mesh"));
+    }
+    return copy(file, folder, "file");
   }
 
   [[nodiscard]] const SceneImage& imageOf(const std::string& name) const {
@@ -215,6 +239,7 @@ class Files {
   const Node& root_;
   const fs::path bundle_;
   std::map<std::string, std::string> copied_;
+  int mesh_folders_ = 0;
   std::map<std::pair<std::string, std::string>, std::string> scans_;
   std::map<std::string, std::string> scan_folders_;
   std::map<std::string, std::string> stand_ins_;

@@ -7,7 +7,6 @@
 
 #include "bake/solid.h"
 #include "lazy_field.h"
-#include "mesh/gltf_guard.h"
 #include "palpate/core/text.h"
 #include "palpate/scene/units.h"
 #include "palpate/scene/vocabulary.h"
@@ -159,8 +158,7 @@ FieldSourcePtr meshField(const CommonPtr& common, const MapReader& reader) {
   // unit.
   source.content = [path, read, bake, sampler](const Progress& progress) {
     GridContent content;
-    // Changes of the files that a .gltf names are not noticed.
-    if (!namesOtherFiles(path)) content.files = SourceState({path});
+    content.files = SourceState(meshFiles(path));
     const Mesh mesh = read(progress);
     content.grid = beginKey("mesh");
     content.grid.add(mesh.vertices.size())

@@ -20,10 +20,11 @@ double depthIn(const Field& field, const Vec3& p) {
   return field.metric() == Metric::kImplicit && slope > 0.0 ? -s.value / slope : -s.value;
 }
 
-/// [m] The same in a region, which does not include what later layers take from it.
-double depthIn(std::span<const Region> regions, std::size_t region, const Vec3& p) {
+/// [m] The same in a region, which does not include what later layers take from it. At most
+/// `enough` where it is that or less: of hundreds of layers most need no look then.
+double depthIn(std::span<const Region> regions, std::size_t region, const Vec3& p, double enough) {
   double depth = depthIn(*regions[region].field, p);
-  for (std::size_t later = region + 1; later < regions.size(); ++later) {
+  for (std::size_t later = region + 1; later < regions.size() && depth > enough; ++later) {
     if (regions[later].field) depth = std::min(depth, -depthIn(*regions[later].field, p));
   }
   return depth;
@@ -33,7 +34,7 @@ double depthIn(std::span<const Region> regions, std::size_t region, const Vec3& 
 
 double thicknessOf(std::span<const Region> regions, std::size_t region) {
   Vec3 p = regions[region].seed;
-  double depth = depthIn(regions, region, p);
+  double depth = depthIn(regions, region, p, 0.0);
   if (!(depth > 0.0)) return kInfinity;
   const double first = depth;
   double step = first;
@@ -43,7 +44,7 @@ double thicknessOf(std::span<const Region> regions, std::size_t region) {
       for (const double side : {1.0, -1.0}) {
         Vec3 next = p;
         next[axis] += side * step;
-        const double there = depthIn(regions, region, next);
+        const double there = depthIn(regions, region, next, depth);
         if (!(there > depth)) continue;
         is_deeper = true;
         depth = there;

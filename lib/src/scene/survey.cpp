@@ -1,11 +1,10 @@
 #include "survey.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <random>
 
 #include "palpate/core/stop.h"
+#include "region_line.h"
 
 namespace palpate {
 namespace {
@@ -13,130 +12,6 @@ namespace {
 constexpr int kStepsPerLine = 128;
 constexpr std::size_t kMaxLines = 20000;  // in total, so that many layers do not take minutes
 constexpr int kHalvings = 40;  // a step shrinks to 1e-12 of itself, about double precision
-
-/// Whether the straight way from `from` to `to` meets `box`.
-bool crosses(const Box3& box, const Vec3& from, const Vec3& to) {
-  double enter = 0.0;
-  double leave = 1.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double way = to[axis] - from[axis];
-    if (way == 0.0) {
-      if (from[axis] < box.lo[axis] || from[axis] > box.hi[axis]) return false;
-      continue;
-    }
-    const double a = (box.lo[axis] - from[axis]) / way;
-    const double b = (box.hi[axis] - from[axis]) / way;
-    enter = std::max(enter, std::min(a, b));
-    leave = std::min(leave, std::max(a, b));
-  }
-  return enter <= leave;
-}
-
-/// The regions along one straight line. Leaves whose bounds the line does not meet are outside all
-/// along it; each of the others is evaluated again only where its Lipschitz bound allows its sign
-/// to have changed.
-class Line {
- public:
-  explicit Line(const Partition& partition)
-      : partition_(partition), signs_(partition.leaves().size()) {}
-
-  void begin(const Vec3& from, const Vec3& to) {
-    from_ = from;
-    along_ = to - from;
-    length_ = glm::length(along_);
-    candidates_.clear();
-    signs_.clear();
-    is_known_ = false;
-    const Vec3 middle = 0.5 * (from + to);
-    // A little wider than the line, for rounding.
-    const Vec3 margin(1e-9 * length_);
-    partition_.tree().visit(middle, 0.5 * length_ * (1.0 + 1e-6), [&](std::uint32_t item) {
-      const Leaf& leaf = partition_.leaves()[item];
-      const Box3 bounds = leaf.field->bounds();
-      if (!crosses({bounds.lo - margin, bounds.hi + margin}, from, to)) return;
-      const Box3 domain = leaf.field->lipschitzDomain();
-      const bool holds = domain.contains(from) && domain.contains(to);
-      candidates_.push_back({static_cast<LeafId>(item), leaf.field.get(), bounds,
-                             holds ? 1.0 / leaf.lipschitz : 0.0, kInfinity, -kInfinity});
-    });
-  }
-
-  /// The region at `p`, a point of the line.
-  RegionId at(const Vec3& p) {
-    const double place = glm::dot(p - from_, along_) / std::max(length_, 1e-300);
-    if (is_known_ && place > fixed_from_ && place < fixed_to_) return region_;
-    bool is_changed = !is_known_;
-    double from = -kInfinity;
-    double to = kInfinity;
-    for (Candidate& candidate : candidates_) {
-      if (!(place > candidate.fixed_from && place < candidate.fixed_to)) {
-        is_changed |= ask(candidate, p, place);
-      }
-      from = std::max(from, candidate.fixed_from);
-      to = std::min(to, candidate.fixed_to);
-    }
-    fixed_from_ = from;
-    fixed_to_ = to;
-    if (is_changed) {
-      region_ = regionHere();
-      is_known_ = true;
-    }
-    return region_;
-  }
-
- private:
-  struct Candidate {
-    LeafId leaf;
-    const Field* field;
-    Box3 bounds;
-    double per_slope;             ///< 1 / Lipschitz bound; 0 where that does not hold
-    double fixed_from, fixed_to;  ///< [m] along the line: its sign is the same in between
-  };
-
-  /// A cache: bisecting towards a wall visits the same few cells again and again.
-  RegionId regionHere() {
-    for (const Cell& cell : cells_) {
-      if (cell.is_known && cell.signs == signs_) return cell.region;
-    }
-    Cell& oldest = cells_[next_cell_];
-    next_cell_ = (next_cell_ + 1) % cells_.size();
-    oldest = {signs_, partition_.regionOf(signs_), true};
-    return oldest.region;
-  }
-
-  /// Evaluates the leaf at `p`; true if its sign changed.
-  bool ask(Candidate& candidate, const Vec3& p, double place) {
-    const double value = candidate.field->value(p);
-    const bool inside = value < 0.0 && candidate.bounds.contains(p);
-    // The length over which the sign is certain, reduced by a share of the line for rounding; not
-    // positive if the value is not a number.
-    const double fixed = std::fabs(value) * candidate.per_slope - 1e-9 * length_;
-    candidate.fixed_from = fixed > 0.0 ? place - fixed : kInfinity;
-    candidate.fixed_to = fixed > 0.0 ? place + fixed : -kInfinity;
-    if (inside == signs_.inside(candidate.leaf)) return false;
-    signs_.set(candidate.leaf, inside);
-    return true;
-  }
-
-  struct Cell {
-    Signs signs;
-    RegionId region = kOutside;
-    bool is_known = false;
-  };
-
-  const Partition& partition_;
-  std::array<Cell, 4> cells_;  ///< the last ones looked up
-  std::size_t next_cell_ = 0;
-  Vec3 from_{0.0};
-  Vec3 along_{0.0};
-  double length_ = 0.0;
-  std::vector<Candidate> candidates_;
-  Signs signs_;
-  double fixed_from_ = kInfinity;  ///< [m] along the line: no sign changes from here to fixed_to_
-  double fixed_to_ = -kInfinity;
-  bool is_known_ = false;
-  RegionId region_ = kOutside;
-};
 
 class Surveyor {
  public:
@@ -206,7 +81,7 @@ class Surveyor {
     out_.has_seed[region] = true;
   }
 
-  Line line_;
+  RegionLine line_;
   Survey out_;
   std::vector<double> run_;
 };

@@ -87,15 +87,4 @@ void checkGltf(const std::string& bytes, const std::string& extension, const std
   }
 }
 
-bool namesOtherFiles(const std::string& path) {
-  if (!hasExtension(path, ".gltf") && !hasExtension(path, ".glb")) return false;
-  const std::string bytes = readBytes(path);
-  constexpr std::string_view kKey = "\"uri\"";
-  for (std::size_t at = 0; (at = bytes.find(kKey, at)) != std::string::npos; at += kKey.size()) {
-    const std::size_t value = bytes.find_first_not_of(" \t\r\n:", at + kKey.size());
-    if (value != std::string::npos && bytes.compare(value, 6, "\"data:") != 0) return true;
-  }
-  return false;
-}
-
 }  // namespace palpate::vdb

@@ -2,6 +2,8 @@
 /// Checks of a glTF file before Assimp reads it.
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace palpate::vdb {
 
@@ -11,7 +13,8 @@ namespace palpate::vdb {
 /// @throws Error (kInput): mesh.truncated, mesh.unreadable.
 void checkGltf(const std::string& bytes, const std::string& extension, const std::string& path);
 
-/// Whether the file at `path` is glTF with buffers in other files.
-[[nodiscard]] bool namesOtherFiles(const std::string& path);
+/// The files that the buffers of a glTF or GLB file lie in, as it names them. Other names, of
+/// textures, and buffers within the file itself do not count.
+[[nodiscard]] std::vector<std::string> gltfBuffers(std::string_view bytes);
 
 }  // namespace palpate::vdb

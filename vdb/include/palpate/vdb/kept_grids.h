@@ -1,6 +1,7 @@
 #pragma once
 /// Grids that scenes keep for the next run, and carry along in bundles.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,14 @@ struct BundleOptions {
   /// Folder of the grids that came with the scene; they take precedence over those of the cache.
   /// Empty: nowhere.
   std::string folder = {};
-  bool fills = false;  ///< grids that may be kept are all written there, too
+  bool fills = false;  ///< all grids that may be kept go there, too
+  /// Called with the name of each grid that may be kept, while the scene is read, and with a
+  /// function that says, once all of it is read, whether the grid was kept before.
+  std::function<void(const std::string& what, std::function<bool()> is_kept)> on_source = {};
 };
 
-/// registerKinds() for a scene that is in a bundle, or that a bundle is made from.
+/// registerKinds() for a scene that is in a bundle, or that one is made of, or that is asked what
+/// of it is kept.
 PALPATE_EXPORT void registerKinds(SceneRegistry& registry, const RegisterOptions& options,
                                   const BundleOptions& bundle);
 
@@ -42,5 +47,10 @@ PALPATE_EXPORT void registerKinds(SceneRegistry& registry, const RegisterOptions
 /// Every file that an image is read from. Empty if they are not known.
 [[nodiscard]] PALPATE_EXPORT std::vector<std::string> imageFiles(const std::string& path,
                                                                  const ImageOptions& options);
+
+/// Every file that a mesh is read from: its own first, then those that the buffers of glTF lie in.
+/// Empty if one of them is not there, or named in a way that we do not follow.
+/// @throws Error (kInput) if a glTF file cannot be read.
+[[nodiscard]] PALPATE_EXPORT std::vector<std::string> meshFiles(const std::string& path);
 
 }  // namespace palpate::vdb
