@@ -55,7 +55,7 @@ int shadeAt(const std::string& slice, std::size_t u, std::size_t v) {
 
 const auto kAlways = [] { return true; };
 
-TEST(GraySlices, ShadesAreThoseOfTheVoxelsWhereThesAre) {
+TEST(GraySlices, ShadesAreThoseOfTheVoxelsWhereTheyAre) {
   const auto image = ramp();
   const GraySlices slices(image, Box3{Vec3(-1.0), Vec3(1.0)}, kAlways);
   ASSERT_FALSE(slices.isEmpty());
@@ -279,6 +279,34 @@ TEST(SeenMarks, ANeedleThatComesOutOnTheOtherSideIsHeldByBoth) {
   marks.add(back);
   marks.add(entry(2, 1, 1, Vec3(0.0), 0.0));
   EXPECT_FALSE(marks.fulcrum());
+}
+
+TEST(SeenMarks, GoOnInAnEditedSceneByTheNamesOfPortsAndRegions) {
+  const ScenePtr scene = compile(parseScene(kTissue, "scene.yaml"));
+  SeenMarks marks(*scene);
+  marks.add(entry(0, 1, 0, Vec3(0.0), kMm));
+  marks.add(entry(1, 2, 1, Vec3(0.0, 0.0, -10.0 * kMm), 0.0));
+  const auto edited = [](std::string text, const std::string& from, const std::string& to) {
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+      text.replace(at, from.size(), to);
+    }
+    return compile(parseScene(text, "scene.yaml"));
+  };
+  // A port before the others: their numbers move on by one.
+  const ScenePtr shifted = edited(
+      kTissue, "ports:\n", "ports:\n  - {name: first, between: [fat, muscle], opens_at: 9 N}\n");
+  const SeenMarks moved(marks, *scene, *shifted);
+  ASSERT_EQ(moved.holes().size(), 1U);
+  EXPECT_EQ(moved.holes()[0].port, 1);
+  EXPECT_EQ(moved.holes()[0].point, Vec3(0.0));
+  ASSERT_TRUE(moved.fulcrum());
+  // What has another name is another port, and another layer.
+  const SeenMarks other(marks, *scene, *edited(kTissue, "puncture", "hole"));
+  EXPECT_TRUE(other.holes().empty());
+  EXPECT_TRUE(other.fulcrum());
+  const SeenMarks gone(marks, *scene, *edited(kTissue, "muscle", "liver"));
+  EXPECT_EQ(gone.holes().size(), 1U);
+  EXPECT_FALSE(gone.fulcrum());
 }
 
 TEST(SeenMarks, NoMoreHolesThanTheLoopRemembers) {
