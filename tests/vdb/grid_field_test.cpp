@@ -147,8 +147,8 @@ TEST(GridField, OutOfTheBandItIsABoundWithTheRightSign) {
       if (std::abs(distance) > 0.3 * shape.voxel) {
         ASSERT_EQ(std::signbit(sample.value), std::signbit(distance)) << distance;
       }
-      // A voxel is active if it is nearer than the rim; all eight are if p is nearer by the cell's
-      // diagonal.
+      // A voxel that is nearer to the surface than the rim is active. All eight around p are
+      // nearer than the rim if p is nearer by the cell's diagonal.
       if (std::abs(distance) < rim - std::sqrt(3.0) * shape.voxel) {
         ASSERT_TRUE(sample.in_band);
       }

@@ -69,7 +69,7 @@ class ShownScene {
   };
 
   void make();
-  /// Those of layers that ports may be on.
+  /// Makes the layers' surfaces; returns the nets of those layers that ports may be on.
   [[nodiscard]] std::vector<LayerNet> makeSurfaces();
   void makePorts(const std::vector<LayerNet>& nets);
   void makeSlices();

@@ -20,10 +20,10 @@ namespace palpate {
 /// the tip is cut.
 ///
 /// A tick takes the tip through the walls one after the other, however far ahead the hand is. At
-/// each wall the tip is on the wall, the hand presses it by its distance beyond it, and the wall
-/// either gives way to its own force or stops the tip. Each tissue that is passed is cut all the
-/// way from where it was entered to where it was left, and holds that part of the shaft from then
-/// on. A tip on a wall that no force opens does not cut the tissue in front of it.
+/// each wall the tip stops on the wall, which is pressed by as far as the hand is beyond it; the
+/// wall either gives way at its own force or holds the tip. Each tissue that is passed is cut all
+/// the way from where it was entered to where it was left, and holds that part of the shaft from
+/// then on. A tip on a wall that no force opens does not cut the tissue in front of it.
 ///
 /// Where a wall holds the tip, the hand goes on without it, and feels the forces of friction and
 /// cutting all that way. If these forces changed meanwhile, the hand could gain more energy on its
