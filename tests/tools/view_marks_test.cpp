@@ -122,7 +122,7 @@ TEST(GraySlices, AreNoLargerThanTheyMayBeWhateverTheScan) {
   // Only the part that is looked at, and that as fine as the voxels.
   const GraySlices part(image, Box3{Vec3(0.0), Vec3(0.01)}, kAlways);
   EXPECT_EQ(part.json()["counts"], Json::array({100, 100, 2}));
-  // Somebody who wants no more waits for little.
+  // If the caller gives up at once, hardly anything is computed.
   int asked = 0;
   const GraySlices given_up(image, Box3{Vec3(-1.0), Vec3(1.0)}, [&] { return ++asked < 1; });
   EXPECT_TRUE(given_up.isEmpty());

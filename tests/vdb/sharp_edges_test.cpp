@@ -182,7 +182,7 @@ TEST(SharpEdges, WhatIsNotOneClosedSurfaceIsRefused) {
   Mesh open = cube;
   open.triangles.pop_back();
   EXPECT_EQ(code(cube, open), "mesh.sharp_open");
-  // So small that every edge of both boxes has a wall of the other one's inside within five voxels.
+  // Small boxes: within five voxels of every edge there is a wall of the other box, inside.
   const Vec3 small(4 * kMm);
   const Mesh overlapping = together(boxMesh(Vec3(0.0), small), boxMesh(Vec3(1 * kMm), small));
   EXPECT_EQ(code(overlapping, overlapping), "mesh.sharp_inner");

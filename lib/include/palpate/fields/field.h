@@ -63,8 +63,8 @@ struct FieldStructure {
     kIntersection,  ///< max of the operands
     kComplement,    ///< minus the operand
     kTransform,     ///< the operand, moved
-    /// inside where inside all operands, which are smooth; the field's own value is better than
-    /// their max (a box: its exact distance, and six half-spaces)
+    /// the part that all operands, which are smooth, have in common; the field's own value is
+    /// better than their max (a box: its exact distance, where operands are six half-spaces)
     kFaces,
   };
   Kind kind = Kind::kLeaf;               ///< how the operands are combined
