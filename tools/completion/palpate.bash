@@ -8,7 +8,7 @@ _palpate() {
   case $verb in
     '') words='touch view replay import bake pack convert info check query explain render report bench accuracy devices doctor help'; options='--help --version --json --quiet --force' ;;
     touch)
-      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --seconds --realtime --set --serial --descriptor --firmware --calibration --library --service --epsilon --halvings --alpha --alpha-form --interior --passivity --hand-force --coupling --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --json --quiet --no-cache --force -h --help'
+      options='--path --as-recorded --press --stroke --tap --insert --normal --depth --clearance --speed --hold --repeats --frequency --taps --back --renderer --rate --device --hand --delay --seconds --realtime --set --serial --descriptor --firmware --calibration --library --service --epsilon --halvings --alpha --alpha-form --interior --passivity --hand-force --coupling --max-force --slew --ramp --trace --record --states --image --plot --write-scene --above --distances --labels --names --layer --voxel --units --affine --space --frame --series --resample --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         --path) words=FILES ;;
@@ -96,7 +96,7 @@ _palpate() {
       esac
       ;;
     import)
-      options='-o --output --dry-run --labels --region --names --min-island --islands --image --skin --body --tissue --tissue-file --codes --strict --to --hounsfield --materials --voxel --priority --affine --space --frame --series --json --quiet --force -h --help'
+      options='-o --output --dry-run --labels --region --names --min-island --islands --image --skin --body --tissue --tissue-file --codes --strict --to --burr-hole --way --hounsfield --materials --voxel --priority --affine --space --frame --series --resample --json --quiet --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -112,6 +112,8 @@ _palpate() {
         --tissue-file) words=FILES ;;
         --codes) words='freesurfer' ;;
         --to) words=NONE ;;
+        --burr-hole) words=NONE ;;
+        --way) words=FILES ;;
         --materials) words=FILES ;;
         --voxel) words=NONE ;;
         --priority) words=NONE ;;
@@ -122,7 +124,7 @@ _palpate() {
       esac
       ;;
     bake)
-      options='-o --output --parts --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --json --quiet --no-cache --force -h --help'
+      options='-o --output --parts --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --resample --above --distances --keep --fill --labels --names --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -153,7 +155,7 @@ _palpate() {
       esac
       ;;
     convert)
-      options='-o --output --to-units --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --above --distances --keep --fill --labels --names --level-set --json --quiet --no-cache --force -h --help'
+      options='-o --output --to-units --voxel --half-width --max-memory --layer --units --sign --shell --smooth --affine --space --frame --series --resample --above --distances --keep --fill --labels --names --level-set --json --quiet --no-cache --force -h --help'
       words=FILES
       case $last in
         -o|--output) words=FILES ;;
@@ -177,7 +179,7 @@ _palpate() {
       esac
       ;;
     info)
-      options='--units --names --affine --space --frame --series --json --quiet -h --help'
+      options='--units --names --affine --space --frame --series --resample --json --quiet -h --help'
       words=FILES
       case $last in
         --units) words=NONE ;;
@@ -199,7 +201,7 @@ _palpate() {
       esac
       ;;
     query)
-      options='--field --at --points --affine --space --frame --series --json --quiet --no-cache -h --help'
+      options='--field --at --points --affine --space --frame --series --resample --json --quiet --no-cache -h --help'
       words=FILES
       case $last in
         --field) words=NONE ;;
@@ -308,7 +310,7 @@ _palpate() {
     help)
       options='--markdown --schema --man --completion -h --help'
       if ((COMP_CWORD == i + 1)); then words='touch view replay import bake pack convert info check query explain render report bench accuracy devices doctor help scene'
-      elif [[ ${COMP_WORDS[i+1]} == scene ]]; then words='above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force force_limits form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials max maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports priority quadric radii radius ramp rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size slew smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width with workspace x xx xy xz y yy yz z zz'; else words=NONE; fi
+      elif [[ ${COMP_WORDS[i+1]} == scene ]]; then words='above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force force_limits form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials max maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports priority quadric radii radius ramp rate ratio reach rearm reference region renderer reopens_at resample rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size slew smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width with workspace x xx xy xz y yy yz z zz'; else words=NONE; fi
       case $last in
         --completion) words='bash fish zsh' ;;
       esac

@@ -82,6 +82,7 @@ _palpate() {
         '*--space[which way the axes of a mesh run (default\: as the file says, else RAS), or of a NRRD image that does not say]:value:(LPS RAS)' \
         '*--frame[which volume of a 4-D image, from 0]:value:' \
         '*--series[which DICOM series of a folder that holds several]:value:' \
+        '*--resample[a DICOM series whose slices are unevenly spaced, off one line or sheared becomes voxels with right angles, linear between slices]' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*--no-cache[make all grids anew, and keep none for the next time]' \
@@ -144,7 +145,9 @@ _palpate() {
         '*--tissue-file[lines of the same; --tissue goes before them]:value:_files' \
         '*--codes[the labels are numbers of FreeSurfer'\''s table, of SynthSeg'\''s too, and need no names]:value:(freesurfer)' \
         '*--strict[a label that fits no tissue is an error]' \
-        '*--to[the shortest straight way to a region or a label that ports let through, clear of bone, vessels and nerves\: reported, and suggested in the scene]:value:' \
+        '*--to[the shortest straight way to a region or a label that ports let through, clear of bone, vessels and nerves\: reported, and suggested in the scene; or to a point marked in Slicer (.mrk.json), from a second point if the file has one]:value:' \
+        '*--burr-hole[--to\: drill a round hole through the bone on the shortest way, in mm or with a unit; the changed image goes to FILE.labels.nii.gz]:value:' \
+        '*--way[--to\: write the way as a line that Slicer loads]:value:_files' \
         '*--hounsfield[--image is a CT in Hounsfield units\: stiffness varies with it, where the table of tissues says how]' \
         '*--materials[table of tissues (default\: the project'\''s data/materials/tissues.yaml)]:value:_files' \
         '*--voxel[voxel size of the grids, in mm or with a unit (default\: of the same volume as the scan'\''s)]:value:' \
@@ -153,6 +156,7 @@ _palpate() {
         '*--space[which way the axes of a NRRD image run that does not say]:value:(LPS RAS)' \
         '*--frame[which volume of a 4-D image, from 0]:value:' \
         '*--series[which DICOM series of a folder that holds several]:value:' \
+        '*--resample[a DICOM series whose slices are unevenly spaced, off one line or sheared becomes voxels with right angles, linear between slices]' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*--force[replace existing output files]' \
@@ -177,6 +181,7 @@ _palpate() {
         '*--space[which way the axes of a mesh run (default\: as the file says, else RAS), or of a NRRD image that does not say]:value:(LPS RAS)' \
         '*--frame[which volume of a 4-D image, from 0]:value:' \
         '*--series[which DICOM series of a folder that holds several]:value:' \
+        '*--resample[a DICOM series whose slices are unevenly spaced, off one line or sheared becomes voxels with right angles, linear between slices]' \
         '*--above[the surface around all voxels greater than this]:value:' \
         '*--distances[the voxels are signed distances, negative inside\: the surface where they are zero]' \
         '*--keep[--above\: which pieces (default largest)]:value:(all largest)' \
@@ -220,6 +225,7 @@ _palpate() {
         '*--space[which way the axes of a mesh run (default\: as the file says, else RAS), or of a NRRD image that does not say]:value:(LPS RAS)' \
         '*--frame[which volume of a 4-D image, from 0]:value:' \
         '*--series[which DICOM series of a folder that holds several]:value:' \
+        '*--resample[a DICOM series whose slices are unevenly spaced, off one line or sheared becomes voxels with right angles, linear between slices]' \
         '*--above[the surface around all voxels greater than this]:value:' \
         '*--distances[the voxels are signed distances, negative inside\: the surface where they are zero]' \
         '*--keep[--above\: which pieces (default largest)]:value:(all largest)' \
@@ -243,6 +249,7 @@ _palpate() {
         '*--space[which way the axes of a mesh run (default\: as the file says, else RAS), or of a NRRD image that does not say]:value:(LPS RAS)' \
         '*--frame[which volume of a 4-D image, from 0]:value:' \
         '*--series[which DICOM series of a folder that holds several]:value:' \
+        '*--resample[a DICOM series whose slices are unevenly spaced, off one line or sheared becomes voxels with right angles, linear between slices]' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*-h[print this]' \
@@ -272,6 +279,7 @@ _palpate() {
         '*--space[which way the axes of a NRRD image run that does not say]:value:(LPS RAS)' \
         '*--frame[which volume of a 4-D image, from 0]:value:' \
         '*--series[which DICOM series of a folder that holds several]:value:' \
+        '*--resample[a DICOM series whose slices are unevenly spaced, off one line or sheared becomes voxels with right angles, linear between slices]' \
         '*--json[print one JSON object instead of text]' \
         '*--quiet[no notes and no progress on stderr]' \
         '*--no-cache[make all grids anew, and keep none for the next time]' \
@@ -406,7 +414,7 @@ _palpate() {
       ;;
     help)
       if ((CURRENT == 3)); then compadd touch view replay import bake pack convert info check query explain render report bench accuracy devices doctor help scene; fi
-      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force force_limits form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials max maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports priority quadric radii radius ramp rate ratio reach rearm reference region renderer reopens_at rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size slew smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width with workspace x xx xy xz y yy yz z zz; fi
+      if ((CURRENT == 4)) && [[ $words[3] == scene ]]; then compadd above affine after alpha amplitude axis back baked balls base below between box capsule center class clutch complement composite cone constant content control coupling curve cutting cylinder damping degrees depth description device difference direction distance edges ellipsoid encoder epsilon exponent factor fall_off felt_from field field_kind fields file fill flow for force force_limits form frame friction from grid grids gyroid half_space half_width halvings hand_force heart height hole image images in inside interior intersection iso keep kinetic labels lateral lattice layer layers length map_of_grid map_of_image mask mass match material material_grid materials max maxwell memory mesh metaball metaballs name names normal offset on opens_at origin out palpate paper parts passed_before passivity period point port ports priority quadric radii radius ramp rate ratio reach rearm reference region renderer reopens_at resample rotate rounded_box rounding sampler scale scene series shading shaft shaft_way sharp sheet sheets shell sign size slew smooth smooth_difference smooth_intersection smooth_union space speed sphere start static stick_speed stiffening stiffness strength texture thickness threshold time times to tolerance torus transfer transform translate tube union unit units viscosity voxel wall walls wavelength where width with workspace x xx xy xz y yy yz z zz; fi
       _arguments \
         '*--markdown[everything, as the reference in tools/README.md; of a map of scene files the table of its keys]' \
         '*--schema[scene\: the JSON Schema of scene files]' \
