@@ -246,7 +246,7 @@ TEST(DicomResampled, ALinearFieldIsTheSameFieldWhereverTheSlicesLie) {
       EXPECT_LT(index.x, image.size[0] - LooseSeries::kColumns + 1e-3);
       EXPECT_LT(index.y, image.size[1] - LooseSeries::kRows + 1e-3);
     }
-    ASSERT_GE(image.notes.size(), 2U);
+    ASSERT_GE(image.notes.size(), 1U);
     EXPECT_NE(image.notes[0].find("resampled on"), std::string::npos) << image.notes[0];
   }
   EXPECT_GT(known, 5000);

@@ -102,7 +102,8 @@ vdb::Image readModels(const ImportOptions& options, Console& console) {
   console.note("the models become " + formatCount(image.size[0]) + " x " +
                formatCount(image.size[1]) + " x " + formatCount(image.size[2]) + " voxels of " +
                formatNumber(1e3 * voxel, 3) + " mm (--voxel): surfaces are met within " +
-               formatNumber(0.866e3 * voxel, 2) + " mm");
+               formatNumber(0.866e3 * voxel, 2) +
+               " mm; --min-island closes gaps between models that touch");
   return image;
 }
 

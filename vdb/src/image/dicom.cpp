@@ -77,10 +77,11 @@ void resample(const DicomSeries& series, Image& image) {
       });
   if (is_straight && series.places.size() > 2) {
     const auto slice_size = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-    image.notes.push_back(
-        "between the slices farthest apart they are off by about " +
-        shortNumber(linearError(series.places, slice_size, image.values), 3) +
-        " (RMS), as the slices themselves show when each is compared with its neighbors");
+    if (const auto off = linearError(series.places, slice_size, image.values)) {
+      image.notes.push_back(
+          "between the slices farthest apart they are off by about " + shortNumber(*off, 3) +
+          " (RMS): so much the slices between others as far apart are off linear values");
+    }
   }
   image.values = resampled(*series.even, series.places, columns, rows, image.values);
   if (!is_straight) {

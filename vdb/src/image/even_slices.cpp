@@ -129,33 +129,38 @@ std::vector<float> resampled(const EvenSlices& even, const std::vector<SlicePlac
   return out;
 }
 
-double linearError(const std::vector<SlicePlace>& slices, std::size_t slice_size,
-                   const std::vector<float>& values) {
+std::optional<double> linearError(const std::vector<SlicePlace>& slices, std::size_t slice_size,
+                                  const std::vector<float>& values) {
+  // Shares of the widest gap within which others count as wide.
+  constexpr double kLeast = 0.95;
+  constexpr double kMost = 1.3;
   double widest = 0.0;
   for (std::size_t k = 1; k < slices.size(); ++k) {
     widest = std::max(widest, slices[k].height - slices[k - 1].height);
   }
   double sum = 0.0;
   std::size_t count = 0;
-  for (std::size_t k = 1; k + 1 < slices.size(); ++k) {
-    const double before = slices[k].height - slices[k - 1].height;
-    const double after = slices[k + 1].height - slices[k].height;
-    // Left out, the slice is off by f'' before after / 2.
-    const double to_curvature = 2.0 / (before * after);
-    const float* below = values.data() + (k - 1) * slice_size;
-    const float* own = below + slice_size;
-    const float* above = own + slice_size;
-    for (std::size_t n = 0; n < slice_size; ++n) {
-      const double low = below[n];
-      const double guess = low + before / (before + after) * (above[n] - low);
-      const double curvature = to_curvature * (own[n] - guess);
-      if (!std::isfinite(curvature)) continue;
-      sum += curvature * curvature;
-      ++count;
+  for (std::size_t low = 0; low + 2 < slices.size(); ++low) {
+    std::size_t high = low + 2;
+    const auto gap = [&] { return slices[high].height - slices[low].height; };
+    while (high + 1 < slices.size() && gap() < kLeast * widest) ++high;
+    if (gap() < kLeast * widest) break;
+    if (gap() > kMost * widest) continue;
+    for (std::size_t k = low + 1; k < high; ++k) {
+      const double share = (slices[k].height - slices[low].height) / gap();
+      const float* below = values.data() + low * slice_size;
+      const float* own = values.data() + k * slice_size;
+      const float* above = values.data() + high * slice_size;
+      for (std::size_t n = 0; n < slice_size; ++n) {
+        const double off = own[n] - (below[n] + share * (above[n] - below[n]));
+        if (!std::isfinite(off)) continue;
+        sum += off * off;
+        ++count;
+      }
     }
   }
-  if (count == 0) return 0.0;
-  return std::sqrt(sum / static_cast<double>(count)) * widest * widest / 8.0;
+  if (count == 0) return std::nullopt;
+  return std::sqrt(sum / static_cast<double>(count));
 }
 
 }  // namespace palpate::vdb

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "image/place.h"
@@ -38,10 +39,11 @@ struct EvenSlices {
                                            int rows, const std::vector<float>& values);
 
 /// [values] How far linear values may be off between the two slices that are farthest apart, RMS,
-/// as the slices themselves say: each is compared with what its two neighbors would give in its
-/// place, and the curvature that this shows bends the widest gap too: h^2 / 8 of it. Of slices that
-/// are stacked straight; three or more.
-[[nodiscard]] double linearError(const std::vector<SlicePlace>& slices, std::size_t slice_size,
-                                 const std::vector<float>& values);
+/// as the slices themselves show: those between any two slices that are as far apart are compared
+/// with the linear values there. For slices that are stacked straight; none if there are no such
+/// two.
+[[nodiscard]] std::optional<double> linearError(const std::vector<SlicePlace>& slices,
+                                                std::size_t slice_size,
+                                                const std::vector<float>& values);
 
 }  // namespace palpate::vdb
