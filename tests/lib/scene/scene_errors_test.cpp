@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
         marked("DecimalComma", field("\n    sphere:\n      center: [0, 0, 0]\n      radius: @1,5"),
                "scene.number", "'1,5'", "decimal point"),
         marked("Quoted", field("{sphere: {center: [0, 0, 0], radius: @\"5\"}}"), "scene.kind",
-               "quoted", "remove the quotes: 5"),
+               "not digits in quotes", "remove the quotes: 5"),
         marked("QuotedPlain", material("{friction: {static: @\"0.3\"}}"), "scene.kind", "quoted",
                "remove the quotes: 0.3"),
         marked("Word", field("{sphere: {center: [0, 0, 0], radius: @big}}"), "scene.number",
@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(
         marked("UnknownUnit", field("{sphere: {center: [0, 0, 0], radius: @5 ells}}"), "scene.unit",
                "'ells'", "m (also mm"),
         marked("WrongUnit", field("{sphere: {center: [0, 0, 0], radius: @5 N}}"), "scene.unit",
-               "a length, and 'N'", "m (also mm"),
+               "must be a length; 'N'", "m (also mm"),
         marked("MissingUnit", material("{stiffness: @1500}"), "scene.unit", "needs its unit",
                "write 1500 N/m (also N/mm"),
         marked("MissingDampingUnit", material("{damping: @1}"), "scene.unit", "needs its unit",
@@ -172,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(
         marked("MissingForceUnit", port("  - {name: p, between: [outside, skin], opens_at: @3}"),
                "scene.unit", "needs its unit", "write 3 N"),
         marked("WrongStiffnessUnit", material("{stiffness: @5 N}"), "scene.unit",
-               "a stiffness, and 'N'", "N/m"),
+               "must be a stiffness; 'N'", "N/m"),
         marked("StiffnessUnitSlip", material("{stiffness: @5 N/n}"), "scene.unit", "'N/n'",
                "'N/m'"),
         marked("QuantityIsAList", material("{stiffness: @[5 N/m]}"), "scene.kind", "a list", ""),
@@ -455,13 +455,14 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(SceneWithoutReaders, SaysThatItReadsNoMeshes) {
   const Problem problem =
       problemOf([] { (void)parseScene(field("{mesh: {file: a.stl}}"), "test.yaml"); });
-  expectRefusal({"", "", 4, 7, "scene.no_reader", "reads no 'mesh'", "palpate::vdb"}, problem);
+  expectRefusal({"", "", 4, 7, "scene.no_reader", "cannot read 'mesh' fields", "palpate::vdb"},
+                problem);
 }
 
 TEST(SceneWithoutReaders, SaysThatItReadsNoImages) {
   const Problem image =
       problemOf([] { (void)parseScene(scene("images: {scan: {file: a.nii}}\n"), "test.yaml"); });
-  expectRefusal({"", "", 3, 10, "scene.no_reader", "reads no images", "palpate::vdb"}, image);
+  expectRefusal({"", "", 3, 10, "scene.no_reader", "cannot read images", "palpate::vdb"}, image);
   const Problem labels = problemOf([] {
     (void)parseScene(layer("  - {name: a, labels: {image: i, match: [x]}}\n"), "test.yaml");
   });
