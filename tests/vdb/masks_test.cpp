@@ -102,7 +102,8 @@ TEST(Masks, WhereTheyOverlapTheSmallestHasTheVoxelUnlessThePrioritySaysSo) {
   EXPECT_EQ((std::vector<float>(image.values.begin() + 9, image.values.begin() + 16)),
             (std::vector<float>{2, 1, 1, 2, 3, 4, 4}));
   // Four voxels of 8 mm^3 are in two masks: two of the tumor, one of each other mask.
-  EXPECT_TRUE(hasNote(image, "4 voxels (0.032 cm^3) are in several masks, and the smallest"))
+  EXPECT_TRUE(hasNote(
+      image, "4 voxels (0.032 cm^3) are in several masks; each goes to the smallest of them"))
       << image.notes.front();
   EXPECT_TRUE(hasNote(image, "a_tumor has 0.016 cm^3 of b_liver"));
   EXPECT_TRUE(hasNote(image, "c_late has 0.008 cm^3 of b_liver"));
@@ -177,8 +178,9 @@ TEST(Masks, OnAnotherGridAreRefusedWithTheShift) {
             std::string::npos);
   NiftiFile mirrored = maskOf({5});
   mirrored.sform[0][0] = -2.0;
-  EXPECT_NE(message_of(mirrored).find("axes LAS, there 6 x 5 x 4 voxels of 2 x 2 x 2 mm, axes RAS"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of(mirrored).find("axes LAS here, 6 x 5 x 4 voxels of 2 x 2 x 2 mm, axes RAS there"),
+      std::string::npos);
   // Two programs write the same place with different last digits.
   NiftiFile close = maskOf({7});
   close.sform[0][3] += 0.002;

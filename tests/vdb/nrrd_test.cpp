@@ -242,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(
                     set(l, "kinds", "RGB-color domain domain domain");
                     set(l, "space directions", "none (1,0,0) (0,2,0) (0,0,3)");
                   }},
-        BadHeader{"FourInSpace", "nrrd.dimensions", "4 lie in space",
+        BadHeader{"FourInSpace", "nrrd.dimensions", "4 of the 4 axes (3 x 2 x 2 x 2) lie in space",
                   [](Lines& l) {
                     set(l, "dimension", "4");
                     set(l, "sizes", "3 2 2 2");
