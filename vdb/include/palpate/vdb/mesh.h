@@ -124,9 +124,10 @@ struct SharpField {
 [[nodiscard]] PALPATE_EXPORT SharpField withSharpEdges(FieldPtr baked, const Mesh& mesh,
                                                        double angle, double voxel);
 
+/// A structure's surface.
 struct NamedMesh {
-  std::string name;
-  Mesh mesh;
+  std::string name;  ///< of the structure; no two may have the same
+  Mesh mesh;         ///< closed
 };
 
 /// Closed meshes, a structure each, as a label image with axes along R, A, S and cubic voxels of
