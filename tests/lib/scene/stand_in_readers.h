@@ -65,6 +65,7 @@ inline SceneRegistry standInReaders() {
     (void)reader.textOr("space", "");
     (void)reader.numberOr("frame", 0.0);
     (void)reader.textOr("series", "");
+    (void)reader.optional("resample");
     for (const char* list : {"with", "priority"}) (void)reader.optional(list);
     return file;
   };
