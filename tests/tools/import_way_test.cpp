@@ -386,7 +386,7 @@ TEST(ImportWay, AFileOfPointsThatIsNoTargetIsRefused) {
             std::string::npos);
   EXPECT_NE(refused(markupsOf({{"", middle}, {"", Vec3(0.5, 0, 0)}})).find("less than 1 mm"),
             std::string::npos);
-  EXPECT_NE(refused(markupsOf({{"tip", Vec3(29.0, 0, 0)}})).find("'tip' at [29, 0, 0] mm (RAS)"),
+  EXPECT_NE(refused(markupsOf({{"tip", Vec3(29.0, 0, 0)}})).find("'tip' at (29, 0, 0) mm (RAS)"),
             std::string::npos);
   EXPECT_NE(refused("{\n\n \"markups\": [}").find("line 3 is not JSON"), std::string::npos);
   EXPECT_NE(refused("[]").find("the file has no 'markups'"), std::string::npos);

@@ -140,13 +140,23 @@ TEST(LabelsOfMeshes, WhereTwoOverlapTheSmallerHasItOrTheOneThatIsNamed) {
   EXPECT_NE(image.notes[0].find("models"), std::string::npos) << image.notes[0];
 }
 
+TEST(LabelsOfMeshes, ASmallHoleIsClosedAndSaid) {
+  const Mesh whole = boxMesh(Vec3(0.5e-3), Vec3(1.05e-2));
+  Mesh torn = whole;
+  torn.triangles.pop_back();
+  const Image image = labelsOfMeshes({{"a", torn}}, 1e-3, {});
+  EXPECT_EQ(image.values, labelsOfMeshes({{"a", whole}}, 1e-3, {}).values);
+  ASSERT_EQ(image.notes.size(), 1U);
+  EXPECT_NE(image.notes[0].find("'a' was not closed"), std::string::npos) << image.notes[0];
+}
+
 TEST(LabelsOfMeshes, RefusesWhatHasNoInside) {
   Mesh open = boxMesh(Vec3(0.0), Vec3(1e-2));
-  open.triangles.pop_back();
+  open.triangles.resize(open.triangles.size() - 2);
   const auto code = [](const std::vector<NamedMesh>& meshes, double voxel) {
     return errorOf([&] { (void)labelsOfMeshes(meshes, voxel, {}); }).problem().code;
   };
-  EXPECT_EQ(code({{"a", open}}, 1e-3), "models.open");
+  EXPECT_EQ(code({{"a", open}}, 1e-3), "mesh.open");
   const Mesh box = boxMesh(Vec3(0.0), Vec3(1.0));
   EXPECT_EQ(code({{"a", box}, {"a", box}}, 0.1), "models.name");
   EXPECT_EQ(code({{"a", box}}, 1e-4), "models.size");

@@ -165,12 +165,11 @@ Report run(const ConvertOptions& options, const GeneralOptions& general, Console
   const bool to_curve = isMarkupsName(output);
   const bool to_grid = vdb::hasExtension(output, ".vdb");
   const bool to_image = isImageName(output);
-  const InputKind kind = to_curve ? InputKind::kGrid : inputKind(options.bake.input);
   if (!options.to_units.empty() && (to_grid || to_image || to_curve)) {
     throw usageError("--to-units applies to meshes", "a grid's unit is that of its input");
   }
-  if (to_image && kind == InputKind::kImage && !options.bake.above && options.bake.labels.empty() &&
-      !options.bake.distances) {
+  if (to_image && inputKind(options.bake.input) == InputKind::kImage && !options.bake.above &&
+      options.bake.labels.empty() && !options.bake.distances) {
     throw usageError(
         "an image of distances needs a surface: --above VALUE, --labels NAME or --distances");
   }

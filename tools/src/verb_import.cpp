@@ -367,7 +367,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
       for (const std::string& file : options.scans) labels.push_back(seenFrom(output, file));
     }
     // A table for models is of their files' numbers, not of the labels.
-    const std::string names = areModels(options.scans) ? "" : options.names;
+    const std::string names = scan.is_relabeled ? "" : options.names;
     const SceneFiles seen = {labels, seenFrom(output, names),
                              seenFrom(output, options.skin ? options.image : options.body),
                              seenFrom(output, options.image)};

@@ -60,7 +60,7 @@ Report run(const TouchOptions& asked, const GeneralOptions& general, Console& co
   } else {
     refuseShapeOptions(options);
   }
-  // A placeholder, so that the options of a press are accepted
+  // Any place will do until the shape is known: the options of a press need one.
   if (finds_place) options.press = "0,0,0";
   checkMotion(options);
   checkDevice(options);

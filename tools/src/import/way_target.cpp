@@ -155,14 +155,6 @@ bool says(const std::string& label, const std::string& word) {
   return lower.find(word) != std::string::npos;
 }
 
-std::string placeText(const Vec3& place) {
-  std::string text;
-  for (int axis = 0; axis < 3; ++axis) {
-    text += (axis > 0 ? ", " : "[") + formatNumber(1e3 * place[axis], 5);
-  }
-  return text + "] mm (RAS)";
-}
-
 WayTarget markedTarget(const ImportedScan& scan, const std::string& file) {
   std::vector<MarkupPoint> points;
   for (const Markup& markup : readMarkups(file)) {
@@ -187,9 +179,11 @@ WayTarget markedTarget(const ImportedScan& scan, const std::string& file) {
   }
   out.region = RegionSampler(scan).at(out.place).region;
   if (out.region == scan.survey.outside()) {
-    throw inputError(
-        "import.target", "'" + out.name + "' at " + placeText(out.place) + " is outside the body",
-        "mark it in the image that the labels are of, in the same patient space", file);
+    throw inputError("import.target",
+                     "'" + out.name + "' at " + formatVector(1e3 * out.place, 5) +
+                         " mm (RAS) is outside the body",
+                     "mark it in the image that the labels are of, in the same patient space",
+                     file);
   }
   return out;
 }

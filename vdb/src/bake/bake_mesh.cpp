@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "bake/agreement.h"
 #include "bake/bake_plan.h"
 #include "bake/columns.h"
 #include "bake/curved.h"
@@ -57,33 +58,6 @@ Box3 boundsOf(const Solid& solid) {
     for (const std::uint32_t vertex : triangle) bounds.include(solid.vertices[vertex]);
   }
   return bounds;
-}
-
-/// @throws Error naming a place that winding number and flood fill judge differently.
-void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& columns,
-                      const BakePlan& plan) {
-  const std::string hint =
-      "repair it in a mesh editor; or choose what decides: --sign winding or --sign flood";
-  if (columns.doubt()) {
-    throw inputError("mesh.ambiguous",
-                     "it is not clear where the mesh is solid: at " +
-                         eachInMillimeters(columns.doubt()->place * plan.voxel) + " " +
-                         columns.doubt()->why,
-                     hint, mesh.source);
-  }
-  CrossingSearch crossings(solid);
-  for (const Columns::Pocket& pocket : columns.pockets()) {
-    // A space whose way out is narrower than a voxel is enclosed as well; it is outside, as it
-    // should be.
-    const std::optional<Vec3> crossing = crossings.in(pocket.box.grownBy(1.5));
-    if (!crossing) continue;
-    throw inputError(
-        "mesh.ambiguous",
-        "the mesh passes through itself at " + eachInMillimeters(*crossing * plan.voxel) +
-            " and encloses a space of " + std::to_string(pocket.voxels) +
-            " voxels there: inside by the flood from outside, outside by the winding number",
-        hint, mesh.source);
-  }
 }
 
 /// Finishes a grid of unsigned distances.
@@ -143,7 +117,8 @@ class MeshBaker {
     std::optional<Solid> whole;
     if (is_solid) {
       columns_.emplace(solid_, options_.mesh_sign, progress_);
-      if (options_.mesh_sign == MeshSign::kVote) requireAgreement(mesh_, solid_, *columns_, plan_);
+      if (options_.mesh_sign == MeshSign::kVote)
+        requireAgreement(mesh_, solid_, *columns_, plan_.voxel);
       if (columns_->hasIdleWalls() || columns_->isFilled() || !solid_.was_closed) {
         whole = solid_;
         dropIdleWalls(solid_, *columns_, progress_);

@@ -146,12 +146,12 @@ struct ImageInfo {
 [[nodiscard]] PALPATE_EXPORT std::string encodeLabels(const Image& image, bool gzip);
 
 /// A table of label names, and colors if it has some:
-///   `index name [code]`, `index name R G B [A]` (Slicer .ctbl and .txt, FreeSurfer LUT; 0 to 255),
-///   separated by
-///       blanks, or by tabs if names hold blanks
-///   `index R G B A visible mesh "name"` (ITK-SNAP)
-///   CSV `value,name` with or without a header line, with Color_R, Color_G, Color_B (Slicer .csv)
-///   an image with a table of its own (.seg.nrrd, .nii.gz)
+/// - `index name [code]`, `index name R G B [A]` (Slicer .ctbl and .txt, FreeSurfer LUT; 0 to 255),
+///   separated by blanks, or by tabs if names hold blanks
+/// - `index R G B A visible mesh "name"` (ITK-SNAP)
+/// - CSV `value,name` with or without a header line, with Color_R, Color_G, Color_B (Slicer .csv)
+/// - an image with a table of its own (.seg.nrrd, .nii.gz)
+///
 /// LF or CR LF; a byte order mark, blank lines and lines from # on are skipped. Lines that are not
 /// UTF-8 are taken for Latin-1.
 /// @throws Error (kInput, codes "labels.*") naming file and line: a value that is not an integer or

@@ -124,19 +124,19 @@ struct SharpField {
 [[nodiscard]] PALPATE_EXPORT SharpField withSharpEdges(FieldPtr baked, const Mesh& mesh,
                                                        double angle, double voxel);
 
-/// A structure's surface.
+/// A structure of a body.
 struct NamedMesh {
   std::string name;  ///< of the structure; no two may have the same
-  Mesh mesh;         ///< closed
+  Mesh mesh;         ///< its surface
 };
 
-/// Closed meshes, a structure each, as a label image with axes along R, A, S and cubic voxels of
-/// `voxel` [m], two of them free on every side. A voxel is of a mesh if its center is inside (the
-/// winding number is not 0), so that surfaces are met within half a voxel's diagonal. Labels run
-/// from 1 in the meshes' order. Where meshes overlap, the one that `priority` names first has the
-/// voxel; else the one of fewer voxels.
-/// @throws Error: kInput, codes "models.*": an open mesh, two of one name, an image of more than
-/// 2^31 voxels; labels.priority; kCancelled.
+/// Meshes, a structure each, as a label image with axes along R, A, S and cubic voxels of `voxel`
+/// [m], two of them free on every side. A voxel is of a mesh if its center is inside, as bakeMesh()
+/// tells inside from outside by MeshSign::kVote, so that surfaces are met within half a voxel's
+/// diagonal. Labels run from 1 in the meshes' order. Where meshes overlap, the one that `priority`
+/// names first has the voxel; else the one of fewer voxels.
+/// @throws Error: kInput, codes "models.*": two of one name, an image of more than 2^31 voxels;
+/// mesh.open and mesh.ambiguous as bakeMesh(); labels.priority; kCancelled.
 [[nodiscard]] PALPATE_EXPORT Image labelsOfMeshes(const std::vector<NamedMesh>& meshes,
                                                   double voxel,
                                                   const std::vector<std::string>& priority,
