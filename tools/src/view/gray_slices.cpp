@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "slices travel as they
 constexpr std::uint8_t kBlack = 1;
 constexpr double kShades = 254.0;  // from black to white
 
-/// Around the centers of all voxels.
+/// The box around the centers of all voxels.
 Box3 boxOf(const vdb::Image& image) {
   Box3 box;
   for (int corner = 0; corner < 8; ++corner) {
@@ -49,7 +49,7 @@ GraySlices::GraySlices(const std::shared_ptr<const vdb::Image>& image, const Box
   const GrayScale scale(image);
   if (!scale.hasShades()) return;
   source_ = vdb::fileName(image->source);
-  // So that the points of a lattice that is not cut off are the voxels' centers.
+  // Half a voxel more, so that points are the voxels' centers unless `view` cuts the box.
   const double finest = finestSpacing(*image);
   box_ = boxOf(*image).grownBy(0.5 * finest).intersectedWith(view);
   const Vec3 size = box_.size();
@@ -59,7 +59,7 @@ GraySlices::GraySlices(const std::shared_ptr<const vdb::Image>& image, const Box
   for (int i = 0; i < 3; ++i) {
     const double cells = std::clamp(std::round(size[i] / step_), 1.0, double{kLongest});
     size_[static_cast<std::size_t>(i)] = static_cast<std::size_t>(cells);
-    // Cells are cubes: what they lack or have too much lies at both ends.
+    // Cells are cubes. The box becomes longer or shorter to hold whole cells, equally at both ends.
     const double spare = 0.5 * (size[i] - cells * step_);
     box_.lo[i] += spare;
     box_.hi[i] -= spare;

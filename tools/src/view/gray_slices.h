@@ -14,25 +14,25 @@
 
 namespace palpate::tools {
 
-/// Keeps a lattice of shades in place of the scan: neither its memory nor the time of a request
-/// grows with the scan.
+/// Keeps a lattice of shades in place of the scan. Its memory, and the time that a request takes,
+/// do not grow with the scan.
 class GraySlices {
  public:
   static constexpr int kLongest = 256;  ///< points along the lattice's longest side, at most
 
-  /// Of the part of `image` within `view`, as dense as its voxels are, or as kLongest allows.
-  /// `is_wanted` is asked now and then; once it says no, the rest is left empty.
+  /// Covers the part of `image` within `view`, as densely as its voxels do, or as kLongest allows.
+  /// Asks `is_wanted` now and then; once that returns false, the rest stays empty.
   GraySlices(const std::shared_ptr<const vdb::Image>& image, const Box3& view,
              const std::function<bool()>& is_wanted);
 
-  /// Whether nothing of the scan has a shade there.
+  /// Whether no point of the lattice has a shade.
   [[nodiscard]] bool isEmpty() const noexcept { return shades_.empty(); }
   /// For a page: the file, the box that the slices fill, and how many there are across each axis.
   [[nodiscard]] Json json() const;
-  /// Slice `index` across `axis`: little-endian, "PSLC", width and height (uint32), and a byte for
-  /// each point, those of the lowest height first: 0 without a value, else from 1, black, to 255.
-  /// Across x the width runs along y and the height along z, across y along x and z, across z along
-  /// x and y. None: there is no such slice.
+  /// Slice `index` across `axis`; nothing if there is none. Little-endian: "PSLC", width and height
+  /// (uint32), and a byte for each point, beginning with the lowest row: 0 for no value, else from
+  /// 1, black, to 255. Across x the width runs along y and the height along z; across y, along x
+  /// and z; across z, along x and y.
   [[nodiscard]] std::optional<std::string> slice(std::size_t axis, std::size_t index) const;
 
  private:
@@ -43,7 +43,7 @@ class GraySlices {
   }
 
   std::string source_;
-  Box3 box_;           ///< [m] a cell of the lattice around each of its points
+  Box3 box_;           ///< [m] made of one cubic cell around each point of the lattice
   double step_ = 0.0;  ///< [m] from point to point
   Index size_{};
   std::vector<std::uint8_t> shades_;

@@ -32,7 +32,7 @@ class PassedCounts {
  public:
   explicit PassedCounts(const Scene& scene)
       : counts_(scene.ports().size(), 0), keeps_(scene.keepsMemory()) {}
-  /// Those of `before`, a count of `from`, by the names that ports have in `to`.
+  /// Takes the counts of `before`, made in `from`, for the ports of `to` with the same names.
   PassedCounts(const PassedCounts& before, const Scene& from, const Scene& to) : PassedCounts(to) {
     for (std::size_t i = 0; i < counts_.size(); ++i) {
       for (std::size_t k = 0; k < before.counts_.size(); ++k) {
@@ -150,7 +150,7 @@ class LiveFeed final : public devices::RecordSink {
     passed_ = tick.begins_anew ? PassedCounts(*to) : PassedCounts(passed_, *scene_, *to);
     marks_ = tick.begins_anew ? SeenMarks(*to) : SeenMarks(marks_, *scene_, *to);
     scene_ = to;
-    // Their numbers are of regions and ports as they were before.
+    // The entries have the numbers that regions and ports had in the scene before.
     entries_.clear();
     coming_.erase(coming_.begin(), std::next(at));
   }
@@ -158,7 +158,7 @@ class LiveFeed final : public devices::RecordSink {
   mutable std::mutex mutex_;
   FeedView view_;
   ScenePtr scene_;
-  std::map<std::uint64_t, ScenePtr> coming_;  ///< that were offered, by number
+  std::map<std::uint64_t, ScenePtr> coming_;  ///< announced scenes, by number
   std::array<LastTick, kLast> last_{};        ///< a ring: the newest tick replaces the oldest
   PassedCounts passed_;
   SeenMarks marks_;

@@ -106,7 +106,7 @@ std::shared_ptr<const ShownScene> PageDesk::goTo(std::uint64_t number) {
   for (auto& other : others_) {
     if (static_cast<std::uint64_t>(other->number()) != number) continue;
     if (other->number() < shown_->number()) return other;
-    // The one before is freed by forgetPast(), not here: its thread may have to end first.
+    // Leaves the scene before to forgetPast(), because its thread may have to end first.
     std::swap(other, shown_);
     break;
   }
@@ -116,7 +116,7 @@ std::shared_ptr<const ShownScene> PageDesk::goTo(std::uint64_t number) {
 void PageDesk::expect(std::shared_ptr<const ShownScene> shown) {
   std::shared_ptr<const ShownScene> replaced;
   const std::lock_guard lock(mutex_);
-  // One that was refused after all had the same number.
+  // If the session refused a scene, the next one has the same number and replaces it.
   for (auto& other : others_) {
     if (other->number() == shown->number()) replaced = std::move(other);
   }
@@ -131,13 +131,13 @@ void PageDesk::edited(SceneEdit edit) {
 }
 
 void PageDesk::forgetPast() {
-  // No page need be there to follow the loop.
+  // Follows the loop even if no page is open.
   (void)goTo(subject_.feed->look(0).scene);
   std::vector<std::shared_ptr<const ShownScene>> past;
   {
     const std::lock_guard lock(mutex_);
     for (auto& other : others_) {
-      // One that an answer still needs goes another time. Nobody gets it meanwhile.
+      // A scene that an answer still uses is freed at a later call.
       const bool is_past = other->number() < shown_->number() && other.use_count() == 1;
       if (is_past) past.push_back(std::move(other));
     }
@@ -152,7 +152,7 @@ std::string PageDesk::sceneText() const {
                {"problem", Json()},  {"hint", Json()}};
   if (edit_.problem) {
     json["problem"] = edit_.problem->message;
-    // A fault in another file needs that file's name.
+    // If the fault is in another file, the page needs that file's name.
     if (edit_.line == 0 && !edit_.problem->file.empty()) {
       json["problem"] = edit_.problem->file + ": " + edit_.problem->message;
     }
@@ -218,11 +218,11 @@ std::optional<PageAnswer> PageDesk::partOf(std::string_view path) const {
 }
 
 std::string PageDesk::snapshot(std::uint64_t& seen, const PagePlace& place) {
-  // A page that goes back in a record gets all of its past each time.
+  // In a recorded run a page may go back, so it always gets all entries up to its row.
   const FeedView view =
       subject_.run != nullptr ? subject_.run->at(row_, 0) : subject_.feed->look(seen);
   const auto scene = subject_.run != nullptr ? shown() : goTo(view.scene);
-  // The mapping of the device may be another one in a new scene.
+  // A new scene may have another mapping of the device.
   if (subject_.hand != nullptr && scene->number() != told_in_) steer(told_);
   Json json = {{"scene", scene->number()},
                {"edit", edits()},

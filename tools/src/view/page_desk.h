@@ -23,8 +23,8 @@ struct PageSubject {
   Json about = {};                   ///< goes into scene.json: device, rate
 };
 
-/// The scene that pages see is the one that the last tick was in: with the others of its number, a
-/// page asks for names and surfaces anew.
+/// Pages see the scene that the last tick was in. Each message contains that scene's number; when
+/// the number changes, a page asks for names and surfaces again.
 class PageDesk {
  public:
   PageDesk(PageSubject subject, std::shared_ptr<const ShownScene> shown);
@@ -34,9 +34,9 @@ class PageDesk {
 
   // For the thread that reads edited scenes.
 
-  /// Before the first tick in it.
+  /// Announces a scene; to be called before the first tick in it.
   void expect(std::shared_ptr<const ShownScene> shown);
-  /// What the scene's file holds now.
+  /// Tells pages the present text of the scene's file, and what became of it.
   void edited(SceneEdit edit);
   /// Frees scenes that nobody sees any more, which may take a while.
   void forgetPast();
@@ -47,11 +47,11 @@ class PageDesk {
   void command(const std::string& message);
   void steer(const Vec3& place);
   [[nodiscard]] std::shared_ptr<const ShownScene> shown() const;
-  /// The scene `number`, or else the one that is shown. A newer one is shown from now on.
+  /// The scene `number`, or else the shown one. A newer scene becomes the shown one.
   [[nodiscard]] std::shared_ptr<const ShownScene> goTo(std::uint64_t number);
   [[nodiscard]] std::uint64_t edits() const;
   [[nodiscard]] std::string sceneText() const;
-  /// The scene `number`, if it is shown, comes, or was shown before and is not forgotten.
+  /// The scene `number`: the shown one, an announced one, or an earlier one that is not freed yet.
   [[nodiscard]] std::shared_ptr<const ShownScene> numbered(std::size_t number) const;
   /// The part of a scene at `path`, which has the scene's number in it: "surface/NUMBER/REGION",
   /// "port/NUMBER/PORT", "slices/NUMBER" and "slice/NUMBER/AXIS/INDEX".
@@ -63,7 +63,7 @@ class PageDesk {
   std::size_t row_ = 0;  ///< in the recorded run
   mutable std::mutex mutex_;
   std::shared_ptr<const ShownScene> shown_;
-  std::vector<std::shared_ptr<const ShownScene>> others_;  ///< that come, and those before
+  std::vector<std::shared_ptr<const ShownScene>> others_;  ///< announced scenes, and earlier ones
   SceneEdit edit_;
   std::uint64_t edits_ = 0;  ///< how often edit_ changed
 };

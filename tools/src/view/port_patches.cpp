@@ -15,10 +15,10 @@ namespace palpate::tools {
 namespace {
 
 constexpr int kNoPort = -1;
-constexpr int kCutsAtRim = 4;       // of a triangle into four
-constexpr int kCutsToFind = 8;      // the same, for a port that may lie within a triangle
-constexpr double kThinnest = 0.01;  // of the longest side of a port's extent
-constexpr double kOff = 1e-6;       // of what is looked at, to either side of a surface
+constexpr int kCutsAtRim = 4;       // times that a triangle at a port's rim is cut into four
+constexpr int kCutsToFind = 8;      // the same, to find a port within a triangle
+constexpr double kThinnest = 0.01;  // least width of an extent, as a share of its longest side
+constexpr double kOff = 1e-6;       // distance to either side of a surface, as a share of size_
 
 /// A point of a surface, and the port there.
 struct Spot {
@@ -56,19 +56,19 @@ class PortPatches::Cutter {
     }
   }
 
-  /// Of a point of the surface, or of a triangle of cutAll().
+  /// The spot at `point`, which is on the surface, or in a triangle of cutAll().
   [[nodiscard]] Spot spot(const Vec3& point, const Vec3& normal) {
     return {point, normal, portAt(onSurface(field_, point, reach_), normal)};
   }
 
   void cutAll(const Corners& t) {
-    // However small its parts, they are off the surface by what the whole is.
+    // Small parts of a triangle may be as far off the surface as the triangle itself.
     reach_ = glm::distance(t[0].point, t[1].point);
     cut(t);
   }
 
  private:
-  /// `finding` and `rim`: how often it was cut so far, to find a port and along a rim.
+  /// `finding` and `rim`: how often the triangle was cut so far, to find a port and along a rim.
   void cut(const Corners& t, int finding = 0, int rim = 0) {
     const bool is_one = isOnePort(t);
     if (is_one && t[0].port == kNoPort && finding < kCutsToFind && mayHide(t)) {
@@ -89,8 +89,8 @@ class PortPatches::Cutter {
     }
   }
 
-  /// `p` is on the surface; `normal` counts where the field has none. kNoPort where nothing but a
-  /// wall is, or no wall at all.
+  /// The port at `p`, a point on the surface; kNoPort if there is only a wall, or no wall. `normal`
+  /// is used where the field has no gradient.
   [[nodiscard]] int portAt(const Vec3& p, const Vec3& normal) {
     const Vec3 off = off_ * unitOr(field_.sample(p).gradient, normal);
     const Partition& partition = scene_.partition();
@@ -111,13 +111,13 @@ class PortPatches::Cutter {
                 unitOr(t[0].normal + t[1].normal + t[2].normal, t[0].normal));
   }
 
-  /// Whether a port may be within it that none of its corners is in.
+  /// Whether a port may lie within the triangle, with none of the corners in it.
   [[nodiscard]] bool mayHide(const Corners& t) const {
     Box3 box;
     for (const Spot& corner : t) box.include(corner.point);
     const double length = glm::length(box.size());
     return std::any_of(owner_.extents_.begin(), owner_.extents_.end(), [&](const Extent& extent) {
-      // Half of it, so that little of a port lies between the corners.
+      // Half the width, so that only a small part of a port can lie between the corners.
       return length > 0.5 * extent.width && !extent.box.intersectedWith(box).isEmpty();
     });
   }
@@ -145,7 +145,7 @@ class PortPatches::Cutter {
   Signs there_;
   double off_;                   ///< [m]
   double reach_ = 0.0;           ///< [m] from a point to the surface, at most
-  std::vector<bool> is_joined_;  ///< by two regions: some port leads from one to the other
+  std::vector<bool> is_joined_;  ///< by two regions: whether some port leads from one to the other
   std::map<std::tuple<std::size_t, double, double, double>, std::uint32_t> known_;
 };
 

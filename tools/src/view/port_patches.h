@@ -1,5 +1,5 @@
 #pragma once
-/// Where the ports of a scene are on the surfaces of its layers, for the eye.
+/// PortPatches: the parts of layers' surfaces where a scene's ports are, for display.
 
 #include <functional>
 #include <vector>
@@ -14,12 +14,12 @@ namespace palpate::tools {
 /// not shown, have none.
 class PortPatches {
  public:
-  /// `size` [m]: of what is looked at.
+  /// `size` [m]: diagonal of the viewed box.
   PortPatches(ScenePtr scene, double size);
 
-  /// `net`: of the whole surface of the layer `region`. A triangle that a port's rim goes through
-  /// is cut up until its parts have sides of a 16th. `is_wanted` is asked now and then; once it
-  /// says no, the rest is left out.
+  /// `net` is the whole surface of the layer `region`. A triangle that crosses a port's rim is cut
+  /// up until its parts have sides of a 16th of its own. Asks `is_wanted` now and then; once that
+  /// returns false, the rest is left out.
   void add(RegionId region, const SurfaceNet& net, const std::function<bool()>& is_wanted);
 
   /// By PortId; empty where no surface has the port.
@@ -27,7 +27,7 @@ class PortPatches {
 
  private:
   class Cutter;
-  /// Where a port's mask is, and how wide at least: triangles there are made no larger.
+  /// The box of a port's mask, and its least width: larger triangles in the box are cut up.
   struct Extent {
     Box3 box;
     double width = 0.0;  ///< [m]

@@ -96,7 +96,7 @@ void RecordedRun::readTrace(const std::string& file, const Scene& scene) {
 
 RegionEntry RecordedRun::entryOf(std::size_t row, RegionId from, int port,
                                  const Scene& scene) const {
-  // The tick before stood at the wall.
+  // In the tick before, the proxy was at the wall.
   const Row& before = rows_[row > 0 ? row - 1 : 0];
   RegionEntry entry{.from = from, .to = rows_[row].region, .port = port, .point = before.proxy};
   const FieldPtr& inner = scene.regions()[std::max(entry.from, entry.to)].field;

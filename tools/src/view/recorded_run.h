@@ -46,7 +46,7 @@ class RecordedRun {
   void readRecord(const std::string& file, const Scene& scene);
   void readTrace(const std::string& file, const Scene& scene);
   void addUp(const Scene& scene);
-  /// The entry in row `row`, as far as rows tell.
+  /// The entry into a region in row `row`, as far as the rows show it.
   [[nodiscard]] RegionEntry entryOf(std::size_t row, RegionId from, int port,
                                     const Scene& scene) const;
 

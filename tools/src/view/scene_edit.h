@@ -1,5 +1,5 @@
 #pragma once
-/// SceneEdit: what a scene's file holds, and what became of it.
+/// SceneEdit: the text of a scene's file, and what became of it.
 
 #include <cstdint>
 #include <optional>
@@ -11,10 +11,10 @@ namespace palpate::tools {
 
 struct SceneEdit {
   enum class State : std::uint8_t {
-    kFelt,       ///< or about to be
-    kCompiling,  ///< the scene before goes on meanwhile
-    kRefused,    ///< the scene before goes on
-    kRecorded,   ///< not taken: the record is of the scene before
+    kFelt,       ///< the text is felt, or about to be
+    kCompiling,  ///< the scene before is felt meanwhile
+    kRefused,    ///< the scene before is still felt
+    kRecorded,   ///< not felt, because the session is recorded in the scene before
   };
   State state = State::kFelt;
   std::string text;

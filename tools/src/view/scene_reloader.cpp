@@ -32,7 +32,7 @@ SceneReloader::~SceneReloader() {
 }
 
 void SceneReloader::run() {
-  // Of this thread alone: the loop goes first.
+  // Applies to this thread only: the loop has priority.
   constexpr int kNice = 10;
   setpriority(PRIO_PROCESS, 0, kNice);
   std::unique_lock lock(mutex_);
@@ -53,7 +53,7 @@ void SceneReloader::take(const SceneSight& sight) {
                   text);
   }
   using State = SceneEdit::State;
-  if (sight == felt_) {  // as before: an edit was taken back
+  if (sight == felt_) {  // an edit was taken back
     last_told_.clear();
     return targets_.desk->edited({.state = State::kFelt, .text = *sight.text});
   }
@@ -77,7 +77,8 @@ void SceneReloader::take(const SceneSight& sight) {
 
 void SceneReloader::compile(const SceneSight& sight) {
   Console silent(true);
-  // What was looked at, not what is in the file by now. An empty text would ask for the file.
+  // Compiles the text that was seen, not the present one. For an empty text, LoadedScene would read
+  // the file.
   const std::string text = sight.text->empty() ? "\n" : *sight.text;
   const LoadedScene loaded(settings_.file, silent, 0, text);
   const Progress progress = [this](std::string_view, double) {
@@ -108,7 +109,7 @@ void SceneReloader::refuse(const Error& error, const std::string& text) {
                          .problem = problem,
                          .line = is_here ? problem.line : 0});
   ++refused_count_;
-  // A file that is saved again and again with the same fault in it says so once.
+  // If a file is saved again with the same fault, the fault is not printed again.
   const std::string told = formatProblem(problem);
   if (told != std::exchange(last_told_, told)) {
     console_.say(told + "\nthe scene goes on as it was");

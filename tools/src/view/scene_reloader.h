@@ -1,5 +1,5 @@
 #pragma once
-/// SceneReloader: what is saved in the editor is felt and shown, as soon as it compiles.
+/// SceneReloader: compiles a scene's file whenever it is saved, and makes it felt and shown.
 
 #include <atomic>
 #include <chrono>
@@ -18,7 +18,7 @@
 
 namespace palpate::tools {
 
-/// Who gets an edited scene. All outlive the reloader.
+/// The receivers of an edited scene. All outlive the reloader.
 struct ReloadTargets {
   devices::Session* session = nullptr;
   LiveFeed* feed = nullptr;
@@ -27,10 +27,10 @@ struct ReloadTargets {
 
 struct ReloadSettings {
   std::string file;
-  /// With which a scene is felt. @throws Error.
+  /// Returns the renderer's settings for a scene. @throws Error.
   std::function<RendererSettings(const LoadedScene&)> renderer;
-  bool is_recorded = false;  ///< then edits are noted, and not taken
-  bool quiet = false;        ///< no notes; the console prints what is refused all the same
+  bool is_recorded = false;  ///< edits are reported, but not felt
+  bool quiet = false;        ///< no notes; the console prints refused edits nevertheless
   std::chrono::milliseconds period{200};  ///< between two looks at the file
 };
 
@@ -39,12 +39,12 @@ struct ReloadCounts {
   int refused = 0;
 };
 
-/// In a thread of its own, at low priority: looks at the file, compiles what changed (grids that
-/// are in the cache are not made again), and offers it to the session. What cannot be compiled is
-/// printed once, and the scene before goes on.
+/// Has a thread of low priority, which looks at the file, compiles an edit (grids in the cache are
+/// not made again), and offers the scene to the session. If an edit cannot be compiled, the console
+/// prints the error once, and the scene before is still felt.
 class SceneReloader {
  public:
-  /// `watch`: of the file, with the text that the session began with.
+  /// `watch` looks at the file; its first text is the one that the session began with.
   SceneReloader(const ReloadTargets& targets, ReloadSettings settings, SceneWatch watch);
   ~SceneReloader();
   SceneReloader(const SceneReloader&) = delete;
@@ -61,9 +61,9 @@ class SceneReloader {
   ReloadTargets targets_;
   ReloadSettings settings_;
   SceneWatch watch_;
-  SceneSight felt_;        ///< as it was offered last
-  int offered_ = 0;        ///< scenes
-  std::string last_told_;  ///< on the console, that was refused
+  SceneSight felt_;        ///< state of the files that is felt
+  int offered_ = 0;        ///< number of scenes that the session took
+  std::string last_told_;  ///< last refusal that the console printed
   Console console_;
   std::atomic<int> felt_count_{0};
   std::atomic<int> refused_count_{0};

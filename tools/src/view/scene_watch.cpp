@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 std::optional<std::string> textOf(const std::string& file) {
   std::error_code failed;
-  // Whoever opens a pipe waits for its writer.
+  // Opening a pipe would wait for its writer.
   if (!fs::is_regular_file(file, failed)) return std::nullopt;
   std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
@@ -39,7 +39,7 @@ FileStamp stampOf(const fs::path& file) {
           nanoseconds(status.st_ctim)};
 }
 
-/// "1500 N/m" and "0.5" name nothing, as long as nothing has that name.
+/// A text that begins like a number, such as "1500 N/m", counts only if a file has that name.
 bool isWorthALook(const fs::path& path, const fs::path& folder) {
   constexpr std::string_view kNumbers = "+-.0123456789";
   const std::string text = path.lexically_relative(folder).string();
@@ -90,8 +90,7 @@ void SceneWatch::follow(const std::string& text) {
     std::erase_if(named, [&](const fs::path& path) { return !isWorthALook(path, folder); });
     named_ = std::move(named);
   } catch (const Error&) {
-    // A text that is not YAML names nothing; what was named before is still of the scene that is
-    // felt.
+    // A text that is not YAML names no files. Files named before still belong to the felt scene.
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// SceneWatch: notices when a scene's file, or a file that it names, is another than before.
+/// SceneWatch: notices changes of a scene's file, and of the files that it names.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,35 +9,35 @@
 
 namespace palpate::tools {
 
-/// Which file it is, and which state of it.
+/// Identifies a file and its state.
 struct FileStamp {
   std::uint64_t device = 0;
   std::uint64_t number = 0;
-  std::int64_t size = -1;     ///< -1: there is none
+  std::int64_t size = -1;     ///< -1: there is no file
   std::int64_t written = 0;   ///< [ns]
-  std::int64_t replaced = 0;  ///< [ns] or renamed, or written with its time set back
+  std::int64_t replaced = 0;  ///< [ns] status change: also when renamed, or its time was set back
   friend bool operator==(const FileStamp&, const FileStamp&) = default;
 };
 
 struct SceneSight {
-  std::optional<std::string> text;  ///< of the scene's file; none: it is not there
+  std::optional<std::string> text;  ///< of the scene's file; none: there is no file
   std::vector<FileStamp> named;     ///< of the files that it names
   friend bool operator==(const SceneSight&, const SceneSight&) = default;
 };
 
-/// Looks only, and waits for nobody: whoever has it looks a few times a second. What two looks in a
-/// row see counts, so that a file that is being written is left in peace; one that is gone counts
-/// after kGone looks, as an editor that saves by renaming may take it away for a moment.
+/// Never waits; its owner calls look() a few times a second. A change counts when two looks in a
+/// row see the same, so that a file is not read half-written. A missing file counts after kGone
+/// looks, because an editor that saves by renaming may remove it for a moment.
 class SceneWatch {
  public:
   static constexpr int kGone = 5;
 
-  /// Looks at once.
+  /// Takes the first look.
   explicit SceneWatch(std::string file);
 
-  /// What there was at first.
+  /// The result of the first look.
   [[nodiscard]] const SceneSight& first() const noexcept { return first_; }
-  /// What there is now, if it is not what the last report said.
+  /// The present state, if it counts and differs from the one reported last.
   [[nodiscard]] std::optional<SceneSight> look();
 
  private:
@@ -49,7 +49,7 @@ class SceneWatch {
   SceneSight first_;
   SceneSight told_;
   SceneSight last_;
-  int gone_ = 0;  ///< looks in a row
+  int gone_ = 0;  ///< looks in a row that found no file
 };
 
 }  // namespace palpate::tools

@@ -1,5 +1,5 @@
 #pragma once
-/// SeenMarks: what the probe left behind on its way: holes, and the way of its shaft.
+/// SeenMarks: the marks that the probe leaves on its way: holes, and the path of its shaft.
 
 #include <algorithm>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace palpate::tools {
 
-/// Where a wall gave way and is open from then on.
+/// A place where a wall gave way, and is open from then on.
 struct SeenHole {
   PortId port = 0;
   Vec3 point{0.0, 0.0, 0.0};   ///< [m]
@@ -21,8 +21,8 @@ struct SeenHole {
   double radius = 0.0;         ///< [m]
 };
 
-/// Made of the entries into regions that a renderer reports: a page never asks the loop for its
-/// own memory.
+/// Built from the entries into regions that a renderer reports, so that a page never reads the
+/// loop's own memory.
 class SeenMarks {
  public:
   explicit SeenMarks(const Scene& scene) : keeps_(scene.keepsMemory()) {
@@ -34,8 +34,8 @@ class SeenMarks {
     }
   }
 
-  /// Those of `before`, seen in `from`, by the names that ports and regions have in `to`: holes of
-  /// ports that are gone are left out, and so is the shaft's way from a region on that is gone.
+  /// Takes the marks of `before`, made in `from`, by the names of ports and regions in `to`. Drops
+  /// holes of missing ports, and the shaft's path from the first missing region on.
   SeenMarks(const SeenMarks& before, const Scene& from, const Scene& to) : SeenMarks(to) {
     const auto named = [](const auto& all, const std::string& name) {
       const auto at =
@@ -63,7 +63,7 @@ class SeenMarks {
     if (entry.to == kOutside && !keeps_) holes_.clear();
     for (std::size_t i = way_.size(); i > 0; --i) {
       const RegionEntry& step = way_[i - 1];
-      // A needle may also come out on the other side, and is held all the more.
+      // If the needle comes out on the far side instead, it is held all the more.
       if (step.from != entry.to || glm::dot(step.normal, entry.normal) > 0.0) continue;
       way_.resize(i - 1);
       return;
@@ -73,7 +73,7 @@ class SeenMarks {
   }
 
   [[nodiscard]] const std::vector<SeenHole>& holes() const noexcept { return holes_; }
-  /// [m] Where the shaft first went into what holds it; none: it is free.
+  /// [m] Where the shaft first entered a region that holds it; nothing: it is free.
   [[nodiscard]] std::optional<Vec3> fulcrum() const {
     return way_.empty() ? std::nullopt : std::optional(way_.front().point);
   }
@@ -87,7 +87,7 @@ class SeenMarks {
       return hole.port == port && glm::distance(hole.point, entry.point) <= hole.radius;
     };
     if (std::any_of(holes_.begin(), holes_.end(), is_same)) return;
-    // As many as the loop remembers.
+    // Keeps only as many as the loop remembers.
     if (holes_.size() == Punctures::kMaxHoles) holes_.erase(holes_.begin());
     holes_.push_back({port, entry.point, entry.normal, entry.hole_radius});
   }
@@ -95,7 +95,7 @@ class SeenMarks {
   bool keeps_;
   std::vector<bool> holds_;  ///< by region: whether its content holds a needle
   std::vector<SeenHole> holes_;
-  std::vector<RegionEntry> way_;  ///< of the shaft, from where it first went in
+  std::vector<RegionEntry> way_;  ///< path of the shaft, from where it was first held
 };
 
 }  // namespace palpate::tools

@@ -219,7 +219,7 @@ void ShownScene::makeSlices() {
   try {
     image = pictureImage(images_, {});
   } catch (const std::exception&) {
-    // Gone since the scene was read, which does without it.
+    // The image cannot be read any more. The scene does without it; the page gets no slices.
   }
   if (!image) return;
   auto slices =

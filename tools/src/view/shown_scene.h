@@ -50,16 +50,16 @@ class ShownScene {
   [[nodiscard]] int number() const noexcept { return number_; }
   [[nodiscard]] const Json& json() const noexcept { return json_; }
   [[nodiscard]] const std::string& text() const noexcept { return text_; }
-  /// Null if it is not made yet, or if there is none.
+  /// The surface of a region. Null if it is not made yet, or if the region has none.
   [[nodiscard]] std::shared_ptr<const std::string> surface(std::size_t region) const;
-  /// How many regions are done so far, in their order.
+  /// The number of regions whose surfaces are done, in the order of regions.
   [[nodiscard]] int surfacesDone() const noexcept { return done_.load(); }
-  /// Where the port is on surfaces, in the form of these. Null if it was not made yet, or is on
-  /// none.
+  /// The parts of surfaces where the port is, in the form of surface(). Null if they are not made
+  /// yet, or if no surface has the port.
   [[nodiscard]] std::shared_ptr<const std::string> port(std::size_t port) const;
   [[nodiscard]] bool portsDone() const noexcept { return are_ports_done_.load(); }
-  /// Of the scene's first image that is not one of labels. Null if they were not made yet, or there
-  /// is none.
+  /// The gray slices of the scene's first image that is not a label image. Null if they are not
+  /// made yet, or if there are none.
   [[nodiscard]] std::shared_ptr<const GraySlices> slices() const;
 
  private:
@@ -69,7 +69,7 @@ class ShownScene {
   };
 
   void make();
-  /// Makes the layers' surfaces; returns the nets of those layers that ports may be on.
+  /// Makes the layers' surfaces. Returns their nets, or none if the scene has no ports.
   [[nodiscard]] std::vector<LayerNet> makeSurfaces();
   void makePorts(const std::vector<LayerNet>& nets);
   void makeSlices();
