@@ -47,7 +47,7 @@ class PageSocket {
             std::string(reply[boost::beast::http::field::content_type]), reply.body()};
   }
 
-  /// Ends with a reset, not with a farewell.
+  /// Closes the connection by a TCP reset, without a regular shutdown.
   void kill() {
     const linger at_once{1, 0};
     setsockopt(socket_.native_handle(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
@@ -60,14 +60,14 @@ class PageSocket {
   boost::asio::ip::tcp::socket socket_;
 };
 
-/// A page's line to the server.
+/// A page's WebSocket connection to the server.
 class PageLine {
  public:
   explicit PageLine(std::uint16_t port) : port_(port), stream_(context_) {
     stream_.next_layer().connect({boost::asio::ip::address_v4::loopback(), port});
   }
 
-  /// False if the server refuses. `origin`: empty: none is said.
+  /// False if the server refuses. An empty `origin` is not sent.
   [[nodiscard]] bool open(const std::string& token, const std::string& origin) {
     namespace websocket = boost::beast::websocket;
     stream_.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
@@ -87,13 +87,13 @@ class PageLine {
     stream_.write(boost::asio::buffer(text), error);
     return !error;
   }
-  /// The next message, which is said to be seen; none once the server has hung up.
+  /// The next message, which is reported as seen; nothing once the server has hung up.
   [[nodiscard]] std::optional<std::string> hear() {
     std::optional<std::string> heard = hearOnly();
     if (heard) (void)say(R"({"seen":true})");
     return heard;
   }
-  /// The next message; none once the server has hung up.
+  /// The next message, which is not reported as seen; nothing once the server has hung up.
   [[nodiscard]] std::optional<std::string> hearOnly() {
     boost::beast::flat_buffer buffer;
     boost::system::error_code error;

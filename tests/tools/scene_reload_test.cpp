@@ -33,7 +33,7 @@ using testing::TempFolder;
 constexpr double kTick = 1e-3;   // [s]
 constexpr double kSlew = 100.0;  // [N/s] as in the scenes below
 
-/// A bowl of glass with syrup in it. What an edit changes stands in a line of its own.
+/// A bowl of glass with syrup in it. Each part that an edit changes has a line of its own.
 struct Bowl {
   double radius = 40.0;      // [mm]
   double stiffness = 800.0;  // [N/m]
@@ -80,14 +80,14 @@ std::string textOf(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// What is saved, and what becomes of it.
+/// A saved text, and what should become of it.
 struct Edit {
   std::string text;
-  int line = 0;  ///< from 1; of the fault. 0: anywhere
+  int line = 0;  ///< line of the fault, from 1; 0: any line
   bool is_valid = true;
 };
 
-/// An edit of `bowl`, which stays as it was if nothing valid comes of it.
+/// An edit of `bowl`. If it is invalid, only its number changes in `bowl`.
 Edit randomEdit(std::mt19937_64& random, Bowl& bowl, int number) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   bowl.edit = number;
@@ -105,7 +105,7 @@ Edit randomEdit(std::mt19937_64& random, Bowl& bowl, int number) {
       return broken(11, "  - {name: liquid, inside: {intersection: [bowl, brim]}, wall: glas}");
     case 3:
       return broken(11, "  - {name: liquid, inside: {mesh: {file: nobody.stl}}, wall: glass}");
-    case 4: {  // not even YAML
+    case 4: {  // not YAML at all
       Edit edit = broken(5, "  bowl: {sphere: {center: [0, 0, 0], radius: 40");
       edit.line = 0;
       return edit;
@@ -133,7 +133,7 @@ Edit randomEdit(std::mt19937_64& random, Bowl& bowl, int number) {
   return {textOf(bowl.lines())};
 }
 
-/// As an editor saves: in place, by renaming, in two halves, or over what it removed before.
+/// Saves as an editor may: in place, by renaming, in two steps, or after removing the old file.
 void save(const TempFolder& folder, const std::string& text, unsigned how) {
   const std::string file = folder.path("bowl.yaml");
   switch (how % 4) {
@@ -168,12 +168,12 @@ class Stroking {
     if (thread_.joinable()) thread_.join();
   }
 
-  // Once it has stopped.
-  double most_step = 0.0;  ///< [N] in a tick, but for what is let go
+  // Valid once the thread has stopped.
+  double most_step = 0.0;  ///< [N] largest change in a tick, apart from letting go
   double peak = 0.0;       ///< [N]
   bool is_finite = true;
   std::int64_t violations = 0;  ///< allocations, locks and throws of the loop
-  std::uint64_t scenes = 0;     ///< the number of the last
+  std::uint64_t scenes = 0;     ///< number of the last scene
 
  private:
   void run(devices::Session& session) {
@@ -192,7 +192,7 @@ class Stroking {
       reading.time += kTick;
       const devices::SessionTick tick = session.step(reading, devices::DeviceFrame::kWorld);
       is_finite = is_finite && isFinite(tick.force);
-      // Letting go is never held back: of the last force any share may stay.
+      // The slew limit does not hold back letting go: any share of the last force may remain.
       const double square = glm::dot(last, last);
       const double share =
           square > 0.0 ? std::clamp(glm::dot(tick.force, last) / square, 0.0, 1.0) : 0.0;
@@ -211,7 +211,7 @@ class Stroking {
   std::thread thread_;
 };
 
-/// A session of a file, with a server; who has it edits the file.
+/// A session on a scene's file, with a server; the test edits the file.
 struct Reloaded {
   explicit Reloaded(const TempFolder& folder, bool is_recorded = false)
       : file(folder.path("bowl.yaml")), watch(file), loaded(file, console) {
@@ -246,7 +246,7 @@ struct Reloaded {
   std::unique_ptr<SceneReloader> reloader;
 };
 
-/// A page that hears until `holds(snapshot)`; false if it does not come to that.
+/// Reads messages until `holds(snapshot)`; false if that does not happen in time.
 template <typename Holds>
 [[nodiscard]] bool hearsUntil(PageLine& line, const Holds& holds) {
   const Deadline deadline;
@@ -279,7 +279,7 @@ TEST(SceneReload, FiftyEditsWhileAHandTouchesAndTwoPagesWatch) {
   for (int i = 1; i <= 50; ++i) {
     const Edit edit = randomEdit(random, bowl, i);
     save(folder, edit.text, static_cast<unsigned>(random() % 4));
-    // Each page hears that something changed, and reads what.
+    // Each page learns from a message that something changed, and reads the new text.
     Json text;
     for (const auto& page : pages) {
       std::uint64_t known = 0;
@@ -309,7 +309,7 @@ TEST(SceneReload, FiftyEditsWhileAHandTouchesAndTwoPagesWatch) {
     }
     ASSERT_EQ(regionsOf(view.get("scene.json")), bowl.regions()) << i;
   }
-  // The last one that can be felt is shown in the end, and to one who comes now.
+  // In the end the last valid edit is shown, also to a page that joins now.
   bowl.edit = 51;
   bowl.stiffness = 555.0;
   save(folder, textOf(bowl.lines()), 1);
@@ -337,7 +337,7 @@ TEST(SceneReload, FiftyEditsWhileAHandTouchesAndTwoPagesWatch) {
   EXPECT_GT(hand.peak, 0.5) << "the hand touched the glass";
 }
 
-/// Saves `text`, and waits until it was read; what became of it.
+/// Saves `text`, waits until it was read, and returns what became of it.
 Json saved(const Reloaded& view, const TempFolder& folder, const std::string& text) {
   save(folder, text, 1);
   Json now;
@@ -389,11 +389,11 @@ TEST(SceneReload, AFaultInAFileThatTheSceneNamesIsToldWithItsName) {
   Reloaded view(folder);
   Stroking hand(view.session, view.feed);
   const std::string text =
-      textOf(bowl.lines()) + "images:\n  scan: {file: scan.nii}\n";  // which is not there yet
+      textOf(bowl.lines()) + "images:\n  scan: {file: scan.nii}\n";  // a file that is missing
   const Json missing = saved(view, folder, text);
   EXPECT_EQ(missing["state"], "refused");
   EXPECT_NE(missing["problem"].get<std::string>().find("scan.nii"), std::string::npos) << missing;
-  // A broken one comes: the scene is tried anew, though its own text is the same.
+  // A broken scan appears: the scene is tried again, though its own text is the same.
   const std::uint64_t edit = missing["edit"];
   (void)folder.file("scan.nii", "not a scan");
   ASSERT_TRUE(testing::waitUntil([&] {
@@ -402,7 +402,7 @@ TEST(SceneReload, AFaultInAFileThatTheSceneNamesIsToldWithItsName) {
   }));
 }
 
-// Some of what a renderer cannot do is noticed only when the scene is offered.
+// The session notices some limits of a renderer only when the scene is offered.
 TEST(SceneReload, ASceneThatNoRendererTakesIsRefused) {
   const TempFolder folder;
   Bowl bowl;
@@ -414,7 +414,7 @@ TEST(SceneReload, ASceneThatNoRendererTakesIsRefused) {
   const Json refused = saved(view, folder, textOf(bowl.lines()) + sheet);
   EXPECT_EQ(refused["state"], "refused");
   EXPECT_NE(refused["problem"].get<std::string>().find("paper"), std::string::npos) << refused;
-  // The next one takes its place.
+  // The next edit takes the place of the refused one.
   bowl.has_pebble = true;
   EXPECT_EQ(saved(view, folder, textOf(bowl.lines()))["state"], "felt");
   ASSERT_TRUE(testing::waitUntil([&] { return view.get("scene.json")["number"] == 1; }));
@@ -433,7 +433,7 @@ TEST(SceneReload, ASessionThatIsRecordedGoesOnInItsScene) {
   EXPECT_EQ(view.reloader->counts().felt, 0);
 }
 
-// Surfaces of a scene that is not felt any more are asked for by pages that have not heard of it.
+// A page that has not heard of the new scene may still ask for surfaces of the old one.
 TEST(SceneReload, SurfacesAreOfTheSceneThatIsAskedFor) {
   const TempFolder folder;
   Bowl bowl;
@@ -447,7 +447,7 @@ TEST(SceneReload, SurfacesAreOfTheSceneThatIsAskedFor) {
   EXPECT_EQ(saved(view, folder, textOf(bowl.lines()))["state"], "felt");
   ASSERT_TRUE(testing::waitUntil([&] { return host.get("surface/1/1").has_value(); }));
   EXPECT_NE(*before->bytes, *host.get("surface/1/1")->bytes);
-  // In time the old ones go; what was got stays whole.
+  // The old surfaces are freed in time; an answer that was received stays valid.
   ASSERT_TRUE(testing::waitUntil([&] { return !host.get("surface/0/1"); }));
   EXPECT_EQ(before->bytes->substr(0, 4), "PSRF");
 }
@@ -482,7 +482,7 @@ TEST(LiveFeed, WhatWasPassedGoesOnByName) {
   EXPECT_EQ(feed.scene()->ports()[1].name, "out");
 }
 
-#ifdef PALPATE_HAS_PAGE  // the command refuses to show anything without one
+#ifdef PALPATE_HAS_PAGE  // without a page the command refuses to show anything
 
 TEST(View, ARecordIsFeltAnewThoughItsSceneWasEdited) {
   const TempFolder folder;
@@ -511,7 +511,7 @@ TEST(View, AnEditIsFeltAndCounted) {
                                    textOf(Bowl{.edit = 1}.lines())};
   const auto viewed = runPalpate({"view", "bowl.yaml", "--no-open", "--json"}, folder.path(),
                                  [&](std::string_view err, pid_t process) {
-                                   // Each edit once the one before was told of.
+                                   // Makes each edit once the edit before was reported.
                                    if (err.find("is felt") != std::string_view::npos) {
                                      kill(process, SIGTERM);
                                    } else if (err.find("furlong") != std::string_view::npos) {

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::TempFolder;
 
-/// What comes of so many looks; the last report.
+/// Looks `count` times, and returns the last report.
 std::optional<SceneSight> looks(SceneWatch& watch, int count) {
   std::optional<SceneSight> told;
   for (int i = 0; i < count; ++i) {
@@ -75,7 +75,7 @@ TEST(SceneWatch, AFileThatIsGoneForAMomentIsNotGone) {
   ASSERT_TRUE(gone);
   EXPECT_FALSE(gone->text);
   EXPECT_FALSE(looks(watch, 10)) << "once";
-  // It comes back as it was: whoever asks what was felt finds the same.
+  // The file comes back as it was, so the report equals the first look.
   (void)folder.file("cup.yaml", "one");
   const auto back = looks(watch, kSettled);
   ASSERT_TRUE(back);
@@ -134,7 +134,7 @@ TEST(SceneWatch, ANewTextNamesOtherFiles) {
   ASSERT_TRUE(looks(watch, kSettled));
   (void)folder.file("bone.stl", "nobody names it any more");
   EXPECT_FALSE(looks(watch, 10));
-  // A text that is not YAML is reported, and names what the one before did.
+  // A text that is not YAML is reported; the files that the text before named still count.
   (void)folder.file("cup.yaml", "a: [");
   ASSERT_TRUE(looks(watch, kSettled));
   (void)folder.file("skull.stl", "mended");

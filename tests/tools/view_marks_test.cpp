@@ -28,7 +28,7 @@ using testing::TempFolder;
 
 constexpr double kMm = 1e-3;
 
-/// Voxels of 2 x 2 x 4 mm, whose values grow along each axis by another step.
+/// Voxels of 2 x 2 x 4 mm. Values grow along each axis, by a different step for each.
 std::shared_ptr<vdb::Image> ramp() {
   auto image = std::make_shared<vdb::Image>();
   image->source = "folder/ramp.nii";
@@ -61,11 +61,11 @@ TEST(GraySlices, ShadesAreThoseOfTheVoxelsWhereTheyAre) {
   ASSERT_FALSE(slices.isEmpty());
   const Json json = slices.json();
   EXPECT_EQ(json["file"], "ramp.nii");
-  // 2 mm apart, also where voxels are 4 mm apart: 5 layers between the centers of 3.
+  // Slices are 2 mm apart, also along z, where voxels are 4 mm apart: 5 slices for 3 voxels.
   EXPECT_EQ(json["counts"], Json::array({5, 4, 5}));
   EXPECT_NEAR(json["box"]["lo"][0].get<double>(), 9 * kMm, 1e-12);
   EXPECT_NEAR(json["box"]["hi"][2].get<double>(), 39 * kMm, 1e-12);
-  // From the 1st to the 99th percentile, which of 60 voxels are the lowest and the highest.
+  // Shades run from the 1st to the 99th percentile: of 60 voxels, the lowest and the highest.
   const double highest = 4 + 10 * 3 + 50 * 2;
   const auto shade = [&](double value) {
     return 1 + static_cast<int>(std::lround(254.0 * value / highest));
@@ -88,7 +88,7 @@ TEST(GraySlices, ShadesAreThoseOfTheVoxelsWhereTheyAre) {
   }
   EXPECT_EQ(shadeAt(*across_y, 1, 2), shade(1 + 20 + 50));
   EXPECT_EQ(shadeAt(*across_z, 4, 3), shade(highest));
-  // Half way between two layers of voxels.
+  // This slice is half way between two layers of voxels.
   EXPECT_EQ(shadeAt(*slices.slice(2, 1), 2, 1), shade(2 + 10 + 25));
 }
 
@@ -106,7 +106,7 @@ TEST(GraySlices, WhatIsNotThereIsNotAnswered) {
   auto even = ramp();
   even->values.assign(even->values.size(), 7.0F);
   EXPECT_TRUE(GraySlices(even, Box3{Vec3(-1.0), Vec3(1.0)}, kAlways).isEmpty());
-  // Elsewhere than the scan is.
+  // A view that does not reach the scan.
   const GraySlices elsewhere(ramp(), Box3{Vec3(-1.0), Vec3(-0.5)}, kAlways);
   EXPECT_TRUE(elsewhere.isEmpty());
   EXPECT_FALSE(elsewhere.slice(0, 0));
@@ -119,7 +119,7 @@ TEST(GraySlices, AreNoLargerThanTheyMayBeWhateverTheScan) {
   for (std::size_t i = 0; i < 720'000; ++i) image->values.push_back(static_cast<float>(i % 1200));
   const GraySlices slices(image, Box3{Vec3(-1.0), Vec3(1.0)}, kAlways);
   EXPECT_EQ(slices.json()["counts"], Json::array({GraySlices::kLongest, 64, 1}));
-  // Only the part that is looked at, and that as fine as the voxels.
+  // Only the viewed part is kept, as fine as the voxels.
   const GraySlices part(image, Box3{Vec3(0.0), Vec3(0.01)}, kAlways);
   EXPECT_EQ(part.json()["counts"], Json::array({100, 100, 2}));
   // If the caller gives up at once, hardly anything is computed.
@@ -137,7 +137,7 @@ double areaOf(const SurfaceNet& net) {
   return area;
 }
 
-/// The patches of a scene whose layers are looked at with `cells` to a side.
+/// The patches of a scene, on surfaces made with `cells` cells along the longest side.
 std::vector<SurfaceNet> patchesOf(const std::string& text, int cells) {
   const ScenePtr scene = compile(parseScene(text, "scene.yaml"));
   PortPatches patches(scene, glm::length(viewBox(*scene).size()));
@@ -155,7 +155,7 @@ TEST(PortPatches, AMouthIsTheDiscOfItsBrim) {
   const SurfaceNet& mouth = patches[0];
   const double radius = std::sqrt(40.0 * 40.0 - 15.0 * 15.0) * kMm;
   const double cell = 1.12 * 80.0 * kMm / cells;
-  // Its rim is an edge, which the net rounds off by up to a cell.
+  // The mouth's rim is an edge, which the net rounds off by up to a cell.
   const double rim = 2.0 * std::numbers::pi * radius * cell;
   EXPECT_NEAR(areaOf(mouth), std::numbers::pi * radius * radius, rim);
   for (const Vec3& p : mouth.points) {
@@ -186,7 +186,8 @@ std::string ballInBall(const std::string& radius) {
 TEST(PortPatches, ARimIsAsRoundAsASixteenthOfATriangle) {
   const int cells = 40;
   const std::vector<SurfaceNet> patches = patchesOf(ballInBall("16"), cells);
-  // A cap of a ball cut by a ball around a point of it has the area of a disc of that radius.
+  // A ball around a point of a larger ball's surface cuts a cap from it; the cap has the area of a
+  // disc of the smaller ball's radius.
   const double radius = 16.0 * kMm;
   const double side = std::sqrt(2.0) * 1.12 * 80.0 * kMm / cells / 16.0;
   EXPECT_NEAR(areaOf(patches[0]), std::numbers::pi * radius * radius,
@@ -210,7 +211,7 @@ TEST(PortPatches, APortWithinOneTriangleIsFound) {
   const int cells = 10;  // of 9 mm
   const std::vector<SurfaceNet> patches = patchesOf(ballInBall("0.8"), cells);
   const double area = std::numbers::pi * 0.8 * 0.8 * kMm * kMm;
-  // Found in triangles no wider than the port, its rim is a 16th of one off.
+  // The port is found in triangles no wider than itself, so its rim is off by a 16th of a triangle.
   EXPECT_NEAR(areaOf(patches[0]), area, 2.0 * std::numbers::pi * 0.8 * 0.8 / 16.0 * kMm * kMm);
 }
 
@@ -255,7 +256,7 @@ TEST(SeenMarks, HolesStayUntilAllIsForgottenAndTheShaftWhileItIsHeld) {
   EXPECT_EQ(*marks.fulcrum(), fascia);
   marks.add(entry(2, 1, 1, fascia, 0.0));
   EXPECT_FALSE(marks.fulcrum());
-  // Through the same hole once more, and through another beside it.
+  // Out, then in once more through the same hole, and through another hole beside it.
   marks.add(entry(1, 0, 0, skin, kMm));
   EXPECT_TRUE(marks.holes().empty());  // outside forgets
   marks.add(entry(0, 1, 0, skin, kMm));
@@ -273,7 +274,7 @@ TEST(SeenMarks, ANeedleThatComesOutOnTheOtherSideIsHeldByBoth) {
   marks.add(out);
   ASSERT_TRUE(marks.fulcrum());
   EXPECT_EQ(*marks.fulcrum(), Vec3(0.0));
-  // Back into the muscle, and out where it came in.
+  // The needle goes back into the muscle, and out where it came in.
   RegionEntry back = entry(1, 2, 1, Vec3(0.0, 0.0, -30.0 * kMm), 0.0);
   back.normal = Vec3(0.0, 0.0, -1.0);
   marks.add(back);
@@ -292,7 +293,7 @@ TEST(SeenMarks, GoOnInAnEditedSceneByTheNamesOfPortsAndRegions) {
     }
     return compile(parseScene(text, "scene.yaml"));
   };
-  // A port before the others: their numbers move on by one.
+  // A new port before the others raises their numbers by one.
   const ScenePtr shifted = edited(
       kTissue, "ports:\n", "ports:\n  - {name: first, between: [fat, muscle], opens_at: 9 N}\n");
   const SeenMarks moved(marks, *scene, *shifted);
@@ -300,7 +301,7 @@ TEST(SeenMarks, GoOnInAnEditedSceneByTheNamesOfPortsAndRegions) {
   EXPECT_EQ(moved.holes()[0].port, 1);
   EXPECT_EQ(moved.holes()[0].point, Vec3(0.0));
   ASSERT_TRUE(moved.fulcrum());
-  // What has another name is another port, and another layer.
+  // A port or a layer that is renamed counts as another one.
   const SeenMarks other(marks, *scene, *edited(kTissue, "puncture", "hole"));
   EXPECT_TRUE(other.holes().empty());
   EXPECT_TRUE(other.fulcrum());
@@ -317,7 +318,7 @@ TEST(SeenMarks, NoMoreHolesThanTheLoopRemembers) {
   EXPECT_EQ(marks.holes().back().point.x, 0.99);
 }
 
-/// What a page is told of a needle's way in a record: tick by tick the same as while it was felt.
+/// A page that shows a record gets the same marks of a needle, tick by tick, as during the touch.
 TEST(ViewedMarks, ARecordShowsTheHoleAndTheShaft) {
   const TempFolder folder;
   (void)folder.file("tissue.yaml", kTissue);
@@ -335,7 +336,7 @@ TEST(ViewedMarks, ARecordShowsTheHoleAndTheShaft) {
   const FeedView end = run.at(run.size() - 1, 0);
   ASSERT_EQ(end.result.region, 2);
   ASSERT_EQ(end.holes.size(), 1U);
-  // The tick before rested on the wall.
+  // In the tick before, the proxy rested on the wall.
   EXPECT_NEAR(end.holes[0].point.z, 0.0, 1e-9);
   EXPECT_EQ(end.holes[0].normal, Vec3(0.0, 0.0, 1.0));
   EXPECT_EQ(end.holes[0].radius, kMm);
@@ -422,7 +423,7 @@ TEST(ViewedMarks, TheWallThatIsPressedIsTheFirstBeforeADeepHand) {
   TickResult result;
   result.contact = true;
   for (const double depth : {0.1, 5.0, 30.0}) {
-    // With 30 mm the hand is in the muscle, whose wall nobody has met yet.
+    // At 30 mm the hand is in the muscle, but the proxy has not met the muscle's wall yet.
     const FeltWords felt = feltAt(*scene, Vec3(0.0, 0.0, -depth * kMm), result);
     EXPECT_EQ(felt.wall, "skin (300 N/m)") << depth;
   }

@@ -149,7 +149,7 @@ TEST(PageServer, RefusesWhoIsNotItsPage) {
     EXPECT_EQ(refused.status, 403);
     EXPECT_EQ(refused.body.find("page</p>"), std::string::npos);
   }
-  // With two Host headers neither counts.
+  // A request with two Host headers is refused.
   PageSocket doubled(served.server.port());
   EXPECT_EQ(doubled.get(served.below(""), served.host() + "\r\nHost: evil.example").status, 403);
   EXPECT_FALSE(PageLine(served.server.port()).open(std::string(32, '0')));

@@ -109,7 +109,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
   }
   [[nodiscard]] int open() const noexcept { return open_.load(); }
 
-  // For the connections.
+  // Called by the connections.
 
   void begin() noexcept { ++open_; }
   void end() noexcept { --open_; }
@@ -120,7 +120,7 @@ class PageServer::Work : public std::enable_shared_from_this<PageServer::Work> {
     const auto text = [](boost::string_view view) {
       return std::string_view(view.data(), view.size());
     };
-    // If a header occurs twice, neither counts.
+    // A request with two Host or two Origin headers is refused, as if it had no Host.
     const bool is_doubled =
         request.count(http::field::host) > 1 || request.count(http::field::origin) > 1;
     PageDecision decision =
