@@ -55,7 +55,7 @@ BakedGrid timed(Make&& make) {
 }
 
 /// The description without the parts that the requested layers do not depend on. Layers of labels
-/// that share an image stay together; nothing is entered, so ports and walls are removed.
+/// that share an image stay together. A bake needs no ports and walls, which are removed.
 SceneDescription neededFor(const BakeOptions& options, SceneDescription description) {
   std::set<std::string> groups;
   for (const auto& layer : description.layers) {
@@ -291,7 +291,7 @@ std::vector<BakedGrid> bakeImage(const BakeOptions& options, Console& console) {
     tellLoss(options, grids.back().grid, console);
   }
   if (layers.size() < 2) return grids;
-  // Where labels meet, the one grid of all labels tells which points are in none of them.
+  // Where labels meet, only the grid of all labels together shows which points are in none of them.
   vdb::BakeOptions whole =
       gridOptions(options, "united", voxel, unit, options.input, memoryOf(grids));
   whole.name = kUnitedGrid;

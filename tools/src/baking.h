@@ -17,12 +17,12 @@ struct BakedGrid {
 };
 
 /// The grid of all labels together. A point belongs to the label whose grid has the smallest value
-/// there, or to none if the negative of this grid's value is smaller still: no gap, no overlap
-/// (vdb::LabelSurfaces).
+/// there, or to none if the negative of this grid's value is smaller still. Labels thus leave no
+/// gap and do not overlap (vdb::LabelSurfaces).
 inline constexpr const char* kUnitedGrid = "united";
 
-/// One grid for each layer of a scene, for a mesh, for an image's threshold, or for each of its
-/// labels; one more of all labels together, if some of them meet.
+/// Makes one grid for each layer of a scene, for a mesh, for an image's threshold, or for each of
+/// its labels; and one more for all labels together, if some of them meet.
 /// @throws Error: kUsage for options that do not apply to this kind of input.
 /// A scene's maps of parameters are added to `materials`, if that is given.
 [[nodiscard]] std::vector<BakedGrid> bakeInput(

@@ -26,7 +26,7 @@ namespace palpate::tools {
 [[nodiscard]] std::string delayText(int delay);
 
 /// Warns of the worst item above the budget, gives the number of the others, and, unless `scene` is
-/// empty, says how to list them. Does nothing if there is none.
+/// empty, says how to list them. Does nothing if `above` is empty.
 void warnOfBudget(std::span<const devices::BudgetItem> above, const DeviceOptions& device,
                   const std::string& scene, double rate, Console& console);
 

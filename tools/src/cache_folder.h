@@ -7,12 +7,12 @@
 
 namespace palpate::tools {
 
-/// Mainly for the grids of scenes (vdb/README.md, "Kept grids"). $PALPATE_CACHE; else
-/// $XDG_CACHE_HOME/palpate, else $HOME/.cache/palpate. Empty, which means nowhere, if the first is
-/// "off" or none is an absolute path.
+/// Mainly for the grids of scenes (vdb/README.md, "Kept grids"): $PALPATE_CACHE if it is set, else
+/// $XDG_CACHE_HOME/palpate, else $HOME/.cache/palpate. Empty, so that nothing is kept, if
+/// $PALPATE_CACHE is not an absolute path ("off"), or if no absolute path is found.
 [[nodiscard]] std::string cacheFolder();
 
-/// From now on nothing is kept (--no-cache).
+/// Nothing is kept from now on (--no-cache).
 void keepNothing() noexcept;
 
 /// Sets the bundle that all scenes loaded from now on fill; an empty folder: none.

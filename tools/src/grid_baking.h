@@ -18,8 +18,8 @@ namespace palpate::tools {
 /// Whether readLevelSet() threw the error only because of the grid's transform or number type.
 [[nodiscard]] bool isMendable(const Error& error, const BakeOptions& options);
 
-/// Reads a level set even if readLevelSet() refuses it for one of these two, with its inside
-/// marked; values are in its own length unit.
+/// Reads a level set, with its inside marked, even if readLevelSet() refuses its transform or its
+/// number type. Values are in its own length unit.
 [[nodiscard]] vdb::Image readDistances(const BakeOptions& options, Console& console);
 
 /// If readLevelSet() refuses the grid for its transform or its number type: a grid of cubic voxels

@@ -12,11 +12,11 @@
 namespace palpate::tools {
 
 [[nodiscard]] Json accuracyJson(const FieldResult& result);
-/// Lengths in `unit`.
+/// A table for people; lengths in `unit`.
 [[nodiscard]] std::string accuracyText(const FieldResult& result, const LengthUnit& unit);
-/// With a heading; SI units.
+/// CSV with a heading line, in SI units.
 [[nodiscard]] std::string accuracyCsv(const std::vector<FieldResult>& results);
-/// Normal error and value error over time and over memory; a line for each field and sampler.
+/// Plots of normal error and value error over time and memory; a line for each field and sampler.
 [[nodiscard]] std::string accuracySvg(const std::vector<FieldResult>& results,
                                       const LengthUnit& unit, const Machine& machine);
 

@@ -65,7 +65,7 @@ struct FieldResult {
   std::vector<Orders> orders = {};
 };
 
-/// The field must be bounded. @throws Error.
+/// Compares a field, which must be bounded, with its grids. @throws Error.
 [[nodiscard]] FieldResult measureLadder(const AskedField& asked, const LadderSettings& settings,
                                         CacheFlood& flood, const Progress& progress);
 

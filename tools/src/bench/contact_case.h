@@ -78,7 +78,7 @@ enum class StartIn { kOutside, kSolid };
 [[nodiscard]] Judge judgeByFormula(std::function<oracle::Minima(const Vec3& hip)> minima);
 
 /// Judges every `stride`-th tick by the oracle (tools/support/oracle). `allowed` is the set of
-/// points allowed in the region of that tick.
+/// points where the proxy may be, the same for all ticks.
 [[nodiscard]] Judge judgeByOracle(oracle::FeasibleSet allowed, std::size_t stride);
 
 }  // namespace palpate::tools

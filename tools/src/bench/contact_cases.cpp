@@ -22,8 +22,9 @@ constexpr double kDepth = 1e-3;  // [m]
 const Vec3 kOrigin(0.0);
 const Vec3 kUp(0.0, 0.0, 1.0);
 
-/// Ten rounds at the depth `depth` below the surface of a ball about the origin (in a hollow:
-/// behind it). The angle along the great circle grows by `speed` / distance from the center.
+/// `rounds` rounds at `depth` below the surface of a ball about the origin; in a hollow, `depth`
+/// beyond its surface. The angle along the great circle grows by `speed` / distance from the
+/// center.
 ContactCase ball(FieldPtr field, double radius, double depth, double speed, Held held,
                  double rounds = 10.0) {
   const bool hollow = held == Held::kInside;

@@ -14,7 +14,7 @@ namespace {
 constexpr int kTicks = 4000;
 constexpr double kTick = 1e-3;  // [s]
 
-/// A sum that depends on every tick.
+/// Runs the guards along the path; the sum that it returns depends on every tick.
 double run(const std::vector<Vec3>& path) {
   devices::PassivityController guard(
       {.mass = 0.2, .damping = 0.5, .friction = 0.1, .encoder = 1e-5, .hand_force = 5.0});
@@ -22,7 +22,7 @@ double run(const std::vector<Vec3>& path) {
   double sum = 0.0;
   double time = 0.0;
   for (const Vec3& hand : path) {
-    // Times as a clock gives them: in the last bits, no tick is as long as the one before.
+    // As with a clock, rounding makes successive periods differ in their last bits.
     const double dt = (time + kTick) - time;
     time += kTick;
     const devices::ToolMotion tool = coupling.reach(hand, dt);

@@ -23,7 +23,7 @@ int numberOf(std::vector<std::string>& names, const std::string& name) {
   return static_cast<int>(names.size());
 }
 
-/// [N/m] The value in whose decade the axis begins.
+/// [N/m] The axis begins with the decade of this value.
 double leastOf(const std::vector<PlotPoint>& points) {
   double least = points.empty() ? 1.0 : points.front().y;
   for (const PlotPoint& point : points) least = std::min(least, point.y);

@@ -12,7 +12,7 @@ struct Machine {
   std::string compiler;
   std::string build_type;
   bool optimized = false;  ///< false: times mean nothing
-  double clock_ns = 0.0;   ///< [ns] that reading the clock adds to a tick's time
+  double clock_ns = 0.0;   ///< [ns] time to read the clock, which is part of a tick's time
 };
 
 [[nodiscard]] Machine thisMachine();

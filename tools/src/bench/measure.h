@@ -41,8 +41,8 @@ struct Judgement {
 
 struct Measurement {
   std::size_t ticks = 0;  ///< number of ticks timed hot
-  /// One run after another; for each tick the shortest time of all runs, so that disturbances by
-  /// other work are left out.
+  /// Runs follow one another without waiting. Each tick counts with its shortest time of all runs,
+  /// which leaves out disturbances by other work.
   HotTimes hot;
   std::optional<OnceTimes> paced = {};
   std::optional<OnceTimes> cold = {};
@@ -51,12 +51,12 @@ struct Measurement {
   std::optional<UnsettledMeter> unsettled = {};
   double step = 0.0;  ///< [N] largest change of the force from tick to tick
   double turn = 0.0;  ///< [degrees] largest turn of the force from tick to tick
-  /// Of the true force, if every tick has one.
+  /// `step` and `turn` of the true force, if the truth is known at every tick.
   std::optional<double> true_step = {}, true_turn = {};
 };
 
-/// Calls `flood` before cold ticks, if there are any. Nothing if the renderer cannot run the case;
-/// then `why` says the reason.
+/// Calls `flood` before cold ticks, if there are any. Returns nothing if the renderer cannot run
+/// the case; `why` then gives the reason.
 [[nodiscard]] std::optional<Measurement> measure(const ContactCase& what, RendererKind kind,
                                                  const MeasureSettings& settings, CacheFlood* flood,
                                                  const Progress& progress, std::string& why);

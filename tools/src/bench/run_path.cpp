@@ -72,7 +72,7 @@ std::vector<std::int64_t> runPaced(const ContactCase& what, HapticRenderer& rend
       what, renderer,
       [&](std::size_t i) {
         if (!isPaced(i)) return;
-        // As for a device: a tick that begins late does not delay the schedule of later ones.
+        // As a device does: a tick that begins late does not delay the schedule of later ticks.
         const bool is_first = (i - what.first) % stretch == 0;
         due = is_first ? Clock::now() + kTick : std::max(due + kTick, Clock::now());
         if ((i - what.first) % 64 == 0) report(progress, "at the pace of a device", -1.0);

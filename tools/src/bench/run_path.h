@@ -24,7 +24,7 @@ struct HotRun {
 [[nodiscard]] std::vector<std::int64_t> runPaced(const ContactCase& what, HapticRenderer& renderer,
                                                  int wanted, const Progress& progress);
 
-/// [ns] of about `wanted` ticks spread over the judged part, each after `flood`.
+/// [ns] Times of about `wanted` ticks spread over the judged part, each after `flood`.
 [[nodiscard]] std::vector<std::int64_t> runCold(const ContactCase& what, HapticRenderer& renderer,
                                                 int wanted, CacheFlood& flood,
                                                 const Progress& progress);

@@ -33,7 +33,7 @@ Error unknown(const char* what, const std::string& name, const std::vector<std::
                 suggestionFor(name, known, "it has " + joined(known))});
 }
 
-/// The requested ones, or `all` if none was requested.
+/// The requested names, or `all` if none was requested.
 std::vector<std::string> chosen(const char* what, const std::vector<std::string>& asked,
                                 const std::vector<std::string>& all) {
   for (const std::string& name : asked) {

@@ -24,7 +24,7 @@ struct Finding {
 };
 
 struct FileCheck {
-  bool is_yes = true;  ///< it can be touched
+  bool is_yes = true;  ///< the content can be touched
   Json json;           ///< begins with "file", "kind" and "ok"
   std::string text;
 };
@@ -36,8 +36,8 @@ struct FileCheck {
 [[nodiscard]] FileCheck checkGridFile(const std::string& file, const CheckOptions& options,
                                       Console& console);
 
-/// Makes everything in the scene. Parts of meshes and scans that its grids could not hold are
-/// notes, and do not make the answer no. @throws Error, if the scene cannot be made.
+/// Makes everything in the scene. Notes report parts of meshes and scans that its grids could not
+/// hold; they do not make the answer "no". @throws Error, if the scene cannot be made.
 [[nodiscard]] FileCheck checkSceneFile(const std::string& file, Console& console);
 
 [[nodiscard]] Json findingsJson(const std::vector<Finding>& findings);

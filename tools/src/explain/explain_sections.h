@@ -24,11 +24,11 @@ void addTransitions(const Scene& scene, const SceneDescription& description, Rep
 void addMaps(const Scene& scene, const SceneDescription& description, Report& report);
 /// Contrasts of stiffness, and shading that needs a wider band than a grid has.
 void addWallNotes(const Scene& scene, Report& report);
-/// What stiffness the device, if one is named, can render of the scene at `rate` [Hz].
+/// Limits of the device, if one is named, and the scene's stability budget at `rate` [Hz].
 void addStability(const Scene& scene, const DeviceOptions& device, double rate, Report& report);
-/// The sources of fields and layers, whether they were made, and what that costs.
+/// The sources of fields and layers, whether they were made, and the cost of the grids.
 void addSources(const Scene& scene, const LoadedScene& loaded, Report& report);
-/// What the whole scene costs, and what its needed part costs: both are read and made anew.
+/// Makes the scene anew, as a whole and only its needed part, and gives the cost of each.
 void addMeasured(const std::string& file, Console& console, Report& report);
 
 }  // namespace palpate::tools

@@ -13,7 +13,7 @@ constexpr const char* kName = "burr_hole";
 constexpr const char* kContent = "fluid";
 constexpr int kMostLabel = 65'535;  // of the image that is written
 
-/// Labels of rigid regions, the target's excepted.
+/// Labels of all rigid regions except the target.
 std::map<int, std::size_t> rigidLabels(const ImportedScan& scan, std::size_t target) {
   std::map<int, std::size_t> out;
   for (std::size_t r = 0; r < scan.plan.regions.size(); ++r) {
@@ -95,7 +95,7 @@ BurrHole drill(ImportedScan& scan, const TissueTable& tissues, const NeedleWay& 
   scan.counts[hole.label] = hole.voxels;
   scan.names[hole.label] = region.name;
   scan.plan.regions.insert(after, std::move(region));
-  // A bone that is gone altogether is not a region any more.
+  // A bone whose voxels all were drilled away is not a region any more.
   std::set<int> left;
   for (const float value : scan.labels.values) left.insert(static_cast<int>(value));
   std::erase_if(scan.plan.regions, [&](const PlannedRegion& each) {

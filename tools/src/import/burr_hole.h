@@ -11,8 +11,8 @@
 namespace palpate::tools {
 
 /// Voxels of rigid tissue whose centers are within `radius` [m] of the line from the way's entry to
-/// its target, short of the target, become a region of their own of the table's fluid. The target's
-/// region stays as it is. The scan's survey is not of its plan any more.
+/// its target become a new region, filled with the table's fluid. The hole ends at the target,
+/// whose own region stays as it is. The scan's survey does not match its plan any more.
 /// @throws Error (kInput): the way meets no bone; the table has no fluid; no label is free.
 [[nodiscard]] BurrHole drill(ImportedScan& scan, const TissueTable& tissues, const NeedleWay& way,
                              const WayTarget& target, double radius);

@@ -118,15 +118,15 @@ class CrossingMaker {
     return result;
   }
 
-  /// Sets the forces of the wall's owner: into the owner and out of it, as the stiffness is the
-  /// owner's too.
+  /// Sets the forces that open a wall into its owner and out of it. They are the owner's, as the
+  /// wall's stiffness is.
   static void rupture(const Group& owner, Meeting& result) {
     if (owner.tissue == nullptr) return;  // the outside has no wall
     result.in = toEnter(owner.tissue);
     result.out = toLeave(owner.tissue);
     result.reopens = toReopen(owner.tissue);
     result.opens = result.in.force != nullptr || owner.is_gap;
-    // The unlabeled rest of a body has no tough surface towards any side.
+    // The unlabeled rest of a body has no tough surface: getting in is as easy as getting out.
     if (owner.is_gap) result.in = result.out;
   }
 

@@ -39,7 +39,7 @@ struct WallBetween {
 
 struct Crossings {
   std::vector<WallBetween> walls;
-  std::vector<Passage> ports;  ///< that of the skin is first
+  std::vector<Passage> ports;  ///< the skin's port comes first
 };
 
 /// @throws Error (kInput) as requireTissue().

@@ -108,8 +108,8 @@ class SceneWriter {
         "millisecond");
   }
 
-  /// The user's choices where the scan leaves something open; images that this code writes leave
-  /// nothing open.
+  /// The user's choices where the scan leaves something open. Images that this code writes need no
+  /// choices.
   [[nodiscard]] std::string reading() const {
     const ScanOptions& o = options_.reading;
     std::string keys;
@@ -342,7 +342,7 @@ std::vector<std::pair<std::string, double>> ImportedScan::neighborsOf(std::size_
 
 GridEstimate estimateGrid(double area, double volume, double voxel) {
   GridEstimate estimate;
-  // A thin part has less inside than the band is wide.
+  // A thin part has fewer voxels inside than the inner half of the band would need.
   const double side = kHalfWidth * area / (voxel * voxel);
   estimate.active_voxels = side + std::min(side, volume / (voxel * voxel * voxel));
   estimate.seconds = estimate.active_voxels * kSecondsPerVoxel;

@@ -42,7 +42,7 @@ struct BurrHole {
 struct ImportedScan {
   vdb::Image labels;
   vdb::NameTable names;
-  std::map<int, std::uint64_t> counts;  ///< voxels of each label, before any change
+  std::map<int, std::uint64_t> counts;  ///< voxels of each label before changes, and of a burr hole
   RegionPlan plan;
   std::vector<OpenAir> open_air;
   vdb::LabelSurvey survey;  ///< for the plan's regions
@@ -57,7 +57,7 @@ struct ImportedScan {
   std::optional<BurrHole> burr_hole;
   bool is_relabeled = false;  ///< the labels were made of models
 
-  /// The labels are not those of the file any more: they are written to one of their own.
+  /// Whether the labels differ from those of the file, so that they are written to a new file.
   [[nodiscard]] bool isChanged(const ImportOptions& options) const {
     return options.min_island.has_value() || burr_hole.has_value() || is_relabeled;
   }

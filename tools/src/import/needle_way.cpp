@@ -130,7 +130,7 @@ class NeedleWayFinder {
     return {r * std::cos(angle), r * std::sin(angle), z};
   }
 
-  /// A way from `to` outwards; nothing if something closes it, which is then counted.
+  /// The way from `to` outwards; nothing if a region closes it, which then counts in closed_.
   std::optional<NeedleWay> along(const Vec3& to, const Vec3& outwards, double clearance) {
     const std::optional<std::vector<Stretch>> stretches = walk(to, outwards);
     if (!stretches) return std::nullopt;
@@ -206,7 +206,7 @@ class NeedleWayFinder {
     return tissue != nullptr && ((isRigid(region) && !through_bone_) || tissue->is_spared);
   }
 
-  /// Whether everything around the way, at the distance `clearance`, may be touched.
+  /// Whether nothing forbidden lies around the way at the distance `clearance`.
   bool isClear(const Vec3& to, const Vec3& outwards, double body, double clearance) {
     const Vec3 other = std::abs(outwards.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
     const Vec3 u = glm::normalize(glm::cross(outwards, other));

@@ -30,8 +30,8 @@ struct NeedleWay {
   /// force that opens it.
   std::vector<WayPart> parts;
   double peak = 0.0;  ///< [N] the largest predicted force
-  /// [m] A needle could be this much thicker on each side and would still keep clear; 0 if the way
-  /// passes nearer than kClearance.
+  /// [m] The needle could be thicker by this much on each side and would still keep clear; 0 if the
+  /// way passes nearer than kClearance.
   double clearance = 0.0;
 
   [[nodiscard]] double length() const;  ///< [m] from the entry to the target
@@ -42,7 +42,7 @@ inline constexpr double kClearance = 2e-3;
 
 /// The shortest of all straight ways from outside to the target that cross walls only through
 /// ports, and touch neither rigid tissue nor tissue that the table wants spared. A way that keeps
-/// kClearance is preferred to one that does not. A target that has an entry leaves a single way.
+/// kClearance is preferred to others. If the target has an entry, only the way from there is tried.
 /// `through_bone`: rigid tissue does not stop the needle.
 /// @throws Error (kInput): every way is closed, with the regions that close them.
 [[nodiscard]] NeedleWay needleWay(const ImportedScan& scan, const TissueTable& tissues,

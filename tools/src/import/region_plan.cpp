@@ -113,8 +113,8 @@ class Planner {
     }
     const auto rank = [&](const PlannedRegion& region) {
       const Tissue& tissue = *region.tissue;
-      // The later of two layers has the wall, so that rigid tissue must come later: otherwise the
-      // softer one's wall would give way in its place.
+      // The wall between two layers is the later one's. Rigid tissue must come last: otherwise the
+      // wall of the softer tissue would give way in its place.
       constexpr std::array kOrder = {TissueClass::kGas, TissueClass::kFluid, TissueClass::kSolid,
                                      TissueClass::kMembrane, TissueClass::kRigid};
       const auto place = std::find(kOrder.begin(), kOrder.end(), tissue.kind) - kOrder.begin();

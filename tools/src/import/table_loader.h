@@ -1,5 +1,5 @@
 #pragma once
-/// The strict reader of maps that scenes use, for tables: these hold no fields and no images.
+/// Reads tables by the strict reader of scene files' maps; tables hold no fields and no images.
 
 #include <memory>
 #include <string>

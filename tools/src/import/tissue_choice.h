@@ -29,9 +29,9 @@ struct NamedLabels {
   std::vector<int> labels;
 };
 
-/// In the order of `regions`. Adds to `notes` whatever a user should know about a choice.
-/// @throws Error: kUsage for a --tissue that names no tissue or fits no region, kInput for such a
-/// line of a file, or if nothing fits and the table has no `unknown`.
+/// One choice for each of `regions`. Adds to `notes` whatever a user should know about a choice.
+/// @throws Error: kUsage for a --tissue that names no tissue or fits no region; kInput for a line
+/// of the file that names no tissue, or if nothing fits and the table has no `unknown`.
 [[nodiscard]] std::vector<TissueChoice> chooseTissues(const ImportOptions& options,
                                                       const std::vector<NamedLabels>& regions,
                                                       const LabelNames& labels,

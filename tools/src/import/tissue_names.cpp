@@ -20,7 +20,7 @@ bool isLetter(char c) {
   return isCapital(c) || isSmall(c) || static_cast<unsigned char>(c) >= 0x80;
 }
 
-/// The name without text in brackets, unless that is all there is.
+/// The name without text in brackets; the whole name if all of it is in brackets.
 std::string withoutBrackets(std::string_view name) {
   std::string result;
   int depth = 0;
@@ -61,7 +61,7 @@ bool fitsAny(const Words& patterns, std::string_view word) {
                      [&](const std::string& p) { return fits(p, word); });
 }
 
-/// Splits words at those of `separators`; no part is empty.
+/// Splits `words` at the separators; no part is empty.
 std::vector<Words> partsOf(const Words& words, const std::set<std::string_view>& separators) {
   std::vector<Words> parts(1);
   for (const std::string& word : words) {
@@ -150,7 +150,7 @@ bool TissueNames::isAside(const std::string& word) const {
   return isDigit(word[0]) || fitsAny(aside_, word);
 }
 
-/// `rest`: the part itself, and everything behind it in the name.
+/// `rest`: this part, and all words after it in the name.
 NameVerdict TissueNames::ofPart(const Words& part, const Words& rest) const {
   const auto has = [](const Words& in, const std::string& pattern) {
     return std::any_of(in.begin(), in.end(),

@@ -28,10 +28,10 @@ struct NameVerdict {
 
 class TissueNames {
  public:
-  /// The tissue of each name. The names are all those of one image, because some words change their
-  /// meaning among others.
+  /// The tissue of each name. `names` are all names of one image, because some words change their
+  /// meaning with the other names.
   [[nodiscard]] std::vector<NameVerdict> of(const std::vector<std::string>& names) const;
-  /// The tissue of a code, if it is a listed one. "none" means that the words have to say more.
+  /// The tissue of a code, if it is listed; "none" if the code alone does not decide the tissue.
   [[nodiscard]] std::optional<std::string> ofCode(const vdb::LabelCode& code) const;
   /// The tissue of a label's number in a table such as "freesurfer".
   [[nodiscard]] std::optional<std::string> ofNumber(const std::string& table, int number) const;
@@ -46,7 +46,7 @@ class TissueNames {
   friend class NamesReader;
   using Words = std::vector<std::string>;
   struct Word {
-    std::string word;  ///< a * at its end means: any word that begins so
+    std::string word;  ///< a * at its end: any word that begins with the rest
     std::string tissue;
   };
   struct Together {

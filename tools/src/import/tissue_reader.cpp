@@ -271,7 +271,7 @@ class TableReader {
     }
   }
 
-  /// Checks that tissues which other tissues name exist.
+  /// Checks that the table has the tissues that `unknown` and linings name.
   void checkNames(const TissueTable& table, const Node& tissues) const {
     if (!table.unknown.empty() && table.find(table.unknown) == nullptr) {
       throw document().error(
