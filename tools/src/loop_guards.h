@@ -12,7 +12,7 @@
 namespace palpate::tools {
 
 /// From --passivity, --hand-force and --coupling, or else from `mapping`, the scene's `device`.
-/// Without --device, their numbers have to be in the scene, or in --coupling. @throws Error
+/// Without --device, the guards' numbers have to be in the scene or in --coupling. @throws Error
 /// (kUsage).
 [[nodiscard]] devices::HandGuards guardsOf(const TouchOptions& options, DeviceMapping mapping,
                                            const std::optional<devices::LoopModel>& loop);

@@ -26,8 +26,8 @@ struct Motion {
 /// @throws Error: kUsage for wrong values, kInput for a faulty path file.
 [[nodiscard]] Motion makeMotion(const TouchOptions& options, const LengthUnit& unit);
 
-/// [s] Time from tick to tick: the median of the path's steps, so that gaps do not count, nor times
-/// that do not rise. For a path without a step, 1 / `rate` [Hz].
+/// [s] Time from tick to tick: the median of the path's steps, so that gaps, and times that do not
+/// rise, do not count. For a path without a step, 1 / `rate` [Hz].
 [[nodiscard]] double nominalPeriod(const devices::Path& path, double rate);
 
 }  // namespace palpate::tools

@@ -11,8 +11,8 @@ namespace fs = std::filesystem;
 
 void addNamed(const Node& node, const fs::path& folder, std::vector<fs::path>& paths) {
   if (node.kind == Node::Kind::kScalar) {
-    // File names contain a dot, a separator or quotes; for numbers and plain words the disk need
-    // not be accessed.
+    // File names contain a dot, a separator or quotes. Numbers and plain words are not looked up on
+    // the disk.
     const bool may_be = node.quoted || node.text.find_first_of("./") != std::string::npos;
     if (may_be && !node.text.empty()) paths.push_back(folder / node.text);
   }
@@ -33,7 +33,7 @@ std::vector<fs::path> filesAt(const fs::path& path) {
   if (fs::is_regular_file(path, failed)) return {path};
   std::vector<fs::path> files;
   if (!fs::is_directory(path, failed)) return files;
-  // Not by a range: its steps throw where a file goes meanwhile.
+  // Not a range-based loop, whose increment throws if something disappears meanwhile.
   const fs::directory_iterator end;
   for (fs::directory_iterator at(path, failed); !failed && at != end; at.increment(failed)) {
     std::error_code ignored;

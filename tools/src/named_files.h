@@ -9,11 +9,11 @@
 namespace palpate::tools {
 
 /// The values of `root` that may be the name of a file or a folder, as seen from `folder`, in the
-/// order of the text. Whether anything is there is not looked at.
+/// order of the text. Does not check whether they exist.
 [[nodiscard]] std::vector<std::filesystem::path> namedPaths(const Node& root,
                                                             const std::filesystem::path& folder);
 
-/// The file at `path`; of a folder the files in it, sorted; nothing if there is neither.
+/// The file at `path`, or the files in the folder `path`, sorted; empty if there is neither.
 [[nodiscard]] std::vector<std::filesystem::path> filesAt(const std::filesystem::path& path);
 
 }  // namespace palpate::tools

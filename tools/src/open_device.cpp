@@ -32,7 +32,7 @@ const devices::DevicePreset& presetOf(const DeviceOptions& options) {
   return devices::devicePreset(is_prefixed ? options.name.substr(kSimulated.size()) : options.name);
 }
 
-/// Whether a model of the device is known, be the device simulated or real.
+/// Whether a model of the device is known; the device may be simulated or real.
 bool hasModel(const DeviceOptions& options) {
   const std::string& name = options.name;
   return !name.empty() && name != "hd" && name != "dhd" && !isInputDevice(name);

@@ -32,7 +32,7 @@ Error operationError(std::string code, std::string message, std::string hint, st
                {std::move(code), std::move(message), std::move(hint), std::move(file)});
 }
 
-/// A file descriptor that is always closed.
+/// Owns a file descriptor, and closes it.
 class Descriptor {
  public:
   explicit Descriptor(int number) noexcept : number_(number) {}
@@ -296,7 +296,7 @@ void OutputFiles::commit() {
     const bool existed = fs::exists(fs::symlink_status(file.target, failed));
     keepMode(file.temporary, file.target);
     if (!rename(file.temporary, file.target,
-                overwrite_)) {  // without --force, the file appeared while this run worked
+                overwrite_)) {  // without --force, this fails if the file appeared during the run
       const int why = errno;
       undo();
       throw operationError("output.rename",

@@ -23,8 +23,8 @@ namespace palpate::tools {
 /// The first option that is given, such as "--serial"; empty: none.
 [[nodiscard]] std::string givenOption(const RealDeviceOptions& options);
 
-/// The device is not opened yet. `seconds` [s] after it is opened it reports its end; not given: it
-/// never does.
+/// Does not open the device yet. `seconds` [s] after the device is opened it reports its end; if
+/// not given, it never does.
 /// @throws Error: kUsage for options that the device does not have, kInput for its files, kDevice
 /// if this build has no driver for it.
 [[nodiscard]] std::unique_ptr<devices::Device> makeRealDevice(const std::string& name,

@@ -1,5 +1,5 @@
 #pragma once
-/// The cost saved by not making parts that a scene does not need.
+/// The cost saved by not making the parts of a scene that are not needed.
 
 #include <cstdint>
 #include <optional>
@@ -17,9 +17,9 @@ struct Saving {
 /// of the grids that the loop reads. @throws Error.
 [[nodiscard]] Saving costOf(const std::string& file, Purpose purpose, Console& console);
 
-/// An estimate: the cost of a band is proportional to its surface, for which the surface of its box
-/// is used. Nothing if no part was left out, or if no grid was made from which the cost of one
-/// would follow.
+/// An estimate: the cost of a grid is taken as proportional to the surface of its
+/// box. Nothing if no part was left out, or if no grid was made whose cost could be
+/// scaled.
 [[nodiscard]] std::optional<Saving> savingOf(const LoadedScene& loaded, const Scene& scene);
 
 }  // namespace palpate::tools

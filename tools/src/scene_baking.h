@@ -1,5 +1,5 @@
 #pragma once
-/// Shared by baking a scene whole and in parts.
+/// Functions for baking a scene as a whole and in parts.
 
 #include <string>
 
@@ -14,13 +14,13 @@ namespace palpate::tools {
 /// Refuses options that make no sense for a scene, and layers that it does not have.
 void checkSceneOptions(const BakeOptions& options, const SceneDescription& description);
 
-/// Whether --layer asks for this one.
+/// Whether --layer asks for `layer`.
 [[nodiscard]] bool isAskedFor(const BakeOptions& options, const std::string& layer);
 
 /// --voxel [m], or 0 if it was not given. @throws Error (kUsage).
 [[nodiscard]] double askedVoxel(const BakeOptions& options, const LengthUnit& unit);
 
-/// [m] A share of the longest side, reported by a note.
+/// [m] A share of the longest side; a note reports it.
 [[nodiscard]] double defaultVoxel(const LengthUnit& unit, const Box3& bounds,
                                   const std::string& what, Console& console);
 
@@ -28,7 +28,7 @@ void checkSceneOptions(const BakeOptions& options, const SceneDescription& descr
 /// (kUsage).
 [[nodiscard]] std::uint64_t memoryLeft(const BakeOptions& options, std::uint64_t taken = 0);
 
-/// The same error; if too little memory was allowed, with a hint to the option that allows more.
+/// The same error. If too little memory was allowed, it gets a hint to the option that allows more.
 [[nodiscard]] Error withMemoryHint(const Error& error);
 
 /// `taken` [bytes]: memory of the grids made before.

@@ -31,8 +31,8 @@ struct Markup {
 /// The text of a file, in LPS and millimeters.
 [[nodiscard]] std::string markupsText(const std::vector<Markup>& markups);
 
-/// `points` without those that the straight line between their neighbors passes within `tolerance`
-/// [m] (Ramer 1972, Douglas and Peucker 1973). The first and the last stay.
+/// `points` without those that lie within `tolerance` [m] of the straight line between their
+/// neighbors (Ramer 1972, Douglas and Peucker 1973). The first and the last stay.
 [[nodiscard]] std::vector<Vec3> thinned(const std::vector<Vec3>& points, double tolerance);
 
 }  // namespace palpate::tools

@@ -19,8 +19,8 @@ void catchStopSignals() {
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // A reader that closes its end becomes an error of writing, reported like others, with nothing
-  // left behind.
+  // If a pipe's reader closes its end, writing then fails instead of ending the process. The error
+  // is reported like others, and no files are left behind.
   struct sigaction ignore = {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, nullptr);

@@ -22,8 +22,8 @@ class TickTimes {
     longest_ = std::max(longest_, time);
   }
 
-  /// [ns] The smallest time that is not exceeded by at least the share `share` of all; 0 if there
-  /// are none.
+  /// [ns] The smallest time t such that at least the share `share` of all times are at most t; 0 if
+  /// there are none.
   [[nodiscard]] double quantile(double share) const noexcept {
     if (count_ == 0) return 0.0;
     const auto rank = std::clamp<std::uint64_t>(

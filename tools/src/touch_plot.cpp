@@ -100,7 +100,7 @@ std::string forcePlot(const Trace& trace, const Scene& scene, const std::string&
   Vec3 furthest(0.0);
   std::size_t turn = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    // Points before the surface are on the other side of it.
+    // Points on the side of the surface from which the hand came do not count.
     const Vec3 way = rows[i].hip - origin;
     if (surface && glm::dot(way, origin - rows.front().hip) < 0.0) continue;
     if (glm::length(way) > glm::length(furthest)) {

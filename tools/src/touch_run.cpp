@@ -99,7 +99,7 @@ TouchRun runTouch(devices::Session& session, devices::Device& device, const Touc
   }
 
   TouchRun run;
-  // The session may run for another hour; nothing else prints meanwhile.
+  // Warns at once, because the session may run for another hour.
   const auto tell = [&console](const Error& failure) {
     console.warn(failure.problem().file + ": " + failure.problem().message +
                  "; the session goes on without it");

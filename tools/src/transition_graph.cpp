@@ -26,8 +26,8 @@ struct Spot {
   double y = 0.0;
 };
 
-/// Number of arrows from the start to each state; one more than the largest number for states that
-/// cannot be reached.
+/// Least number of arrows from the start to each state; one more than the largest of these numbers
+/// for states that cannot be reached.
 std::vector<std::size_t> columnsOf(std::span<const GraphState> states,
                                    std::span<const GraphArrow> arrows) {
   const std::size_t unknown = states.size();

@@ -21,8 +21,8 @@ struct GraphArrow {
   bool is_wall_absent = false;
 };
 
-/// An SVG page. The column of a state is the number of arrows from the start to it; states that
-/// cannot be reached come last.
+/// An SVG page. The column of a state is the least number of arrows from the start to it; states
+/// that cannot be reached come last.
 [[nodiscard]] std::string transitionSvg(const std::string& title,
                                         std::span<const GraphState> states,
                                         std::span<const GraphArrow> arrows);

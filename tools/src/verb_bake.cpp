@@ -18,7 +18,7 @@ namespace palpate::tools {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// For a larger grid no bricks are made only to measure its error: they take several hundred MB.
+/// Larger grids do not get bricks only to measure their errors: bricks take several hundred MB.
 constexpr std::uint64_t kMostForBricks = 10'000'000;  // active voxels
 
 /// The grids as a table and as JSON.

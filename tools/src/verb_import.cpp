@@ -44,7 +44,7 @@ vdb::Image readNoted(const std::string& path, const vdb::ImageOptions& how, Cons
   return image;
 }
 
-/// How the labels are read; every other image is a single file.
+/// The options for the label image; it may have several files, unlike all other images.
 vdb::ImageOptions labelOptions(const ImportOptions& options) {
   vdb::ImageOptions how = imageOptions(options.reading);
   how.with.assign(options.scans.begin() + 1, options.scans.end());
@@ -254,7 +254,7 @@ ImportedScan readAll(const ImportOptions& options, const TissueTable& tissues, C
   return scan;
 }
 
-/// One note for all of them: the report lists them.
+/// Prints one note for all unknown labels; the report lists them.
 void tellUnknown(const ImportedScan& scan, Console& console) {
   double volume = 0.0;
   std::size_t count = 0;
@@ -276,8 +276,8 @@ std::string withoutExtension(const std::string& path) {
   return (fs::path(path).parent_path() / fs::path(path).stem()).string();
 }
 
-/// Makes the hole that was asked for, on the shortest way through bone: the target, to be reached
-/// from the same side.
+/// Drills the requested hole along the shortest way through bone. Returns the target with that
+/// way's entry.
 WayTarget drilled(const ImportOptions& options, const TissueTable& tissues, const WayTarget& target,
                   ImportedScan& scan, Console& console) {
   const double radius = 0.5 * parseLength(options.burr_hole, {}, "--burr-hole");
@@ -366,7 +366,7 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
       labels.clear();
       for (const std::string& file : options.scans) labels.push_back(seenFrom(output, file));
     }
-    // A table for models is of their files' numbers, not of the labels.
+    // The table of names for models has numbers of files, not of labels.
     const std::string names = scan.is_relabeled ? "" : options.names;
     const SceneFiles seen = {labels, seenFrom(output, names),
                              seenFrom(output, options.skin ? options.image : options.body),

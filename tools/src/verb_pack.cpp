@@ -159,7 +159,7 @@ class Files {
     return now;
   }
 
-  /// A mesh whose buffers lie beside it keeps them where it names them, in a folder of its own.
+  /// Copies a mesh. Files that it names keep their places relative to it, in a folder of their own.
   std::string copyFile(const fs::path& file) {
     const std::vector<std::string> all = vdb::meshFiles(file.string());
     if (all.empty()) {
@@ -288,7 +288,8 @@ Report run(const PackOptions& options, const GeneralOptions& general, Console& c
   fillBundle(grids.string());
   LoadedScene loaded(options.scene, console);
   fillBundle({});
-  // Ask for the layers' boxes before the layers are made, because scenes do that to leave some out.
+  // Asks for the layers' boxes before the layers are made, which puts the boxes into the bundle:
+  // scenes ask for them to leave out layers.
   for (const LayerDescription& layer : loaded.description().layers) {
     if (layer.inside) static_cast<void>(layer.inside->bounds(console.progress()));
   }

@@ -69,7 +69,7 @@ std::string pageText(const PageServer& server) {
          formatBytes(counts.bytes) + " sent, " + formatCount(counts.refused) + " refused\n";
 }
 
-/// A line about edits of the scene; empty if there were none.
+/// A line about edits of the scene; empty if none was felt.
 std::string editsText(const ReloadCounts& edits) {
   if (edits.felt == 0) return {};
   return "Edited " + std::to_string(edits.felt) + " times; all that follows is since the last\n\n";
@@ -161,7 +161,7 @@ Report viewSession(const ViewOptions& asked, const GeneralOptions& general, Cons
   about.shows_all = true;
   about.renderer = rendererName(*renderer.kind);
   if (!options.record.empty()) {
-    // With its text: the file may be edited while the session lasts.
+    // Records the scene's text, because the file may be edited during the session.
     describe(about, options, device.info(), *scene, text);
     about.period = renderer.limits.period;
   }
@@ -184,7 +184,7 @@ Report viewSession(const ViewOptions& asked, const GeneralOptions& general, Cons
 
   const bool is_paced_by_device = device.info().is_clock;
   const ReloadCounts edits = reloader.counts();
-  // The summary is of the scene that was felt last, as the feed got it.
+  // The summary is of the scene that was felt last; the feed knows which one that is.
   const ScenePtr last = feed.scene();
   Report report;
   report.json = {{"schema", "palpate.view/1"},

@@ -18,8 +18,8 @@ struct WallNote {
   Json json;
 };
 
-/// For a compiled scene, as the `constraint` renderer feels it. Lengths in texts are in the scene's
-/// unit.
+/// Notes on a compiled scene, as the `constraint` renderer feels it. Lengths in texts are in the
+/// scene's unit.
 [[nodiscard]] std::vector<WallNote> wallNotes(const Scene& scene);
 
 }  // namespace palpate::tools

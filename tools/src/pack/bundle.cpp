@@ -43,7 +43,7 @@ void openBundles(AnyOptions& options) {
         } else if constexpr (std::is_same_v<Options, ConvertOptions>) {
           open(of.bake.input);
         } else if constexpr (std::is_same_v<Options, BenchOptions>) {
-          // The scenes of a bench have names of their own, not files.
+          // A bench names its own scenes, not files.
         } else if constexpr (requires { of.scene; }) {
           open(of.scene);
         } else if constexpr (requires { of.input; }) {

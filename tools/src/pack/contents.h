@@ -20,8 +20,8 @@ namespace palpate::tools {
 /// since it was packed. The scene itself may be edited.
 void checkContents(const std::filesystem::path& bundle);
 
-/// A file or folder below `bundle` that is not in its list, and that replacing the bundle would
-/// delete.
+/// A file or folder below `bundle` that is not in its list, and would be deleted if the bundle were
+/// replaced.
 [[nodiscard]] std::optional<std::string> foreignIn(const std::filesystem::path& bundle);
 
 }  // namespace palpate::tools

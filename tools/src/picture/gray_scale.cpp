@@ -56,7 +56,7 @@ double GrayScale::at(const Vec3& p) const noexcept {
       weight *= up ? share[i] : 1.0 - share[i];
       at[i] = std::min(lower[i] + (up ? 1 : 0), image_->size[static_cast<std::size_t>(i)] - 1);
     }
-    // One that only rounding asks for may have no value.
+    // A voxel whose weight is only a rounding error may have no value.
     if (weight > kRounding) value += weight * image_->at(at[0], at[1], at[2]);
   }
   if (std::isnan(value)) return kNone;

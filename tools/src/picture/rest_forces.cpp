@@ -13,7 +13,7 @@
 namespace palpate::tools {
 namespace {
 
-constexpr int kMostWays = 64;     // most surfaces that are left one after another
+constexpr int kMostWays = 64;     // most steps out of one layer after another
 constexpr double kBeyond = 1e-6;  // [m] the hand starts this far outside
 constexpr double kStride = 2e-4;  // [m] per tick, on the way in
 constexpr int kFewestStrides = 16;
@@ -21,7 +21,7 @@ constexpr int kMostStrides = 400;
 constexpr int kMostRest = 200;     // [ticks] in which a hand must come to rest
 constexpr double kStill = 1e-6;    // [N] largest change of the force per tick at rest
 constexpr double kNoForce = 1e-6;  // [N]
-// Number of steps along each direction, where the fields do not tell the nearest way out
+// Number of steps along each direction, if the fields do not lead outside
 constexpr int kLooks = 200;
 
 struct Extent {

@@ -9,8 +9,8 @@
 namespace palpate::tools {
 
 struct RestForce {
-  Vec3 at{0.0, 0.0, 0.0};     ///< [m] the hand
-  Vec3 force{0.0, 0.0, 0.0};  ///< [N] on it
+  Vec3 at{0.0, 0.0, 0.0};     ///< [m] of the hand
+  Vec3 force{0.0, 0.0, 0.0};  ///< [N] on the hand
 };
 
 /// The part of `plane` within `box` is divided into squares: `count` along its longer side, and as

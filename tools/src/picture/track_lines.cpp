@@ -31,7 +31,7 @@ void forces(Sheet& s) {
     const Pixel tail = s.onSheet(s.view.pixel(p.proxy));
     const Pixel tip{tail.x + longest / s.peak * glm::dot(p.force, s.plane.right),
                     tail.y - longest / s.peak * glm::dot(p.force, s.plane.up)};
-    // Of arrows that would cover one another only the first is drawn.
+    // If arrows would cover one another, only the first is drawn.
     const bool taken = std::any_of(drawn.begin(), drawn.end(), [&](const auto& other) {
       return distanceTo(other.first, other.second, tail) < s.px(13) ||
              distanceTo(tail, tip, other.first) < s.px(13);

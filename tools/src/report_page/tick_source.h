@@ -16,7 +16,7 @@ struct TickSource {
   std::vector<std::string> ports;    ///< names by PortId
   std::uint64_t ticks = 0;
   std::optional<RecordAbout> about;  ///< only for a record
-  /// Ticks of a record by its header; if more than `ticks`, it was cut short
+  /// Number of ticks by a record's header; if it is more than `ticks`, the record was cut short
   std::uint64_t promised = 0;
 };
 

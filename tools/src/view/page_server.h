@@ -52,9 +52,9 @@ struct PageServerCounts {
 };
 
 /// Listens on 127.0.0.1 only, below a folder whose name nobody can guess. It has one thread. No
-/// browser can delay others by what it does or fails to do, and memory is bounded: there are limits
-/// for the number of connections, for the messages under way to each (one), and for the size and
-/// rate of messages from each.
+/// browser can delay others, whatever it does, and memory is bounded: there are limits for the
+/// number of connections, for the messages under way to each (one), and for the size and rate of
+/// messages from each.
 ///
 /// A page sends {"seen":true} for each message that it has shown, and then gets the next one;
 /// without it, after a while. The page that sends {"steer":true} steers until it sends false or

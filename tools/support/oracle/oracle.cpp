@@ -100,8 +100,8 @@ class Run {
  private:
   /// Sine of the angle to a stationary point below which Newton may take over.
   static constexpr double kNearly = 0.05;
-  /// Limit of projections by search in a run: at a cusp a handful is enough, along a kink no number
-  /// is.
+  /// Limit of projections by search in a run: at a cusp a few are enough, along a kink no number is
+  /// enough.
   static constexpr int kMostSearches = 300;
 
   [[nodiscard]] LocalPoint advance(const Vec3& x) const {
