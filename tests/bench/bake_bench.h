@@ -53,7 +53,7 @@ auto timed(benchmark::State& state, const Make& make) {
 using Made = std::pair<std::shared_ptr<const void>, std::uint64_t>;
 
 /// Runs `make` once more, untimed. Adds "memory_mb", the memory of its result, and "peak", the
-/// largest memory in use meanwhile, relative to that.
+/// largest memory in use meanwhile as a multiple of it.
 void addPeak(benchmark::State& state, const std::function<Made()>& make);
 
 }  // namespace palpate::vdb::bench

@@ -50,7 +50,7 @@ class FunctionMap final : public MaterialMap {
                                               MaterialMap::Range range) {
   return std::make_shared<LinearMap>(value, gradient, range);
 }
-/// The same value everywhere, which only the values themselves show.
+/// A map with the same value everywhere; a Parameter that has it still counts as a map.
 [[nodiscard]] inline MaterialMapPtr flatMap(double value) {
   return linearMap(value, Vec3(0.0), {value, value});
 }

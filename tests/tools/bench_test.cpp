@@ -117,8 +117,8 @@ TEST(Bench, EveryTickAboutATipIsJudged) {
     const Json& row = resultOf(report, scene, "constraint");
     EXPECT_EQ(row["judged"], row["ticks"]) << scene;
     EXPECT_EQ(row["missed"], 0) << scene;
-    // Wherever the proxy is, the hand does not outrun it: its force is that of the formula, except
-    // for the part that still has to slide.
+    // The proxy keeps up with the hand: the force is that of the formula, except for the distance
+    // that the proxy still has to slide.
     EXPECT_LE(row["magnitude_error"]["max"].get<double>(), 0.01) << scene;
   }
 }

@@ -33,8 +33,8 @@ class DeviceInTheLoop : public ::testing::Test {
 TEST_F(DeviceInTheLoop, ATouchMovesTheDeviceByTheHandAndTheWall) {
   // A relaxed hand aims 4 mm into the wall. At rest its spring, 250 N/m, its grip, 800 N/m, and the
   // wall, 1000 N/m, are in series: the wall takes 1 / 1000 of 4 mm / (1 / 250 + 1 / 800 + 1 /
-  // 1000), 0.64 mm and 0.64 N. The device's friction, 0.3 N, and the encoder's step, 9 um, may keep
-  // it off this place by the wall's share of them.
+  // 1000), 0.64 mm and 0.64 N. The device may rest off this place by its friction, 0.3 N,
+  // divided by the stiffness of wall and hand together, 1190 N/m, plus the encoder's step, 9 um.
   const CommandResult result =
       run({"touch", "wall.yaml", "--press", "0,0,0", "--depth", "4", "--hold", "2", "--device",
            "omega_3", "--trace", "trace.csv", "--json"});

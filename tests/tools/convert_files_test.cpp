@@ -143,8 +143,8 @@ TEST(ConvertFiles, ALabelScanBecomesAGridForEachLabel) {
     EXPECT_GT(mesh.volume, 0.4 * ballVolume(15.0));
     sum += mesh.volume;
   }
-  // Within a third of a voxel of 1 x 1 x 1.5 mm all around: the accuracy of labels is tested
-  // elsewhere; here, that all of them arrive, in the right size.
+  // Within a third of a voxel of 1 x 1 x 1.5 mm all around. Other tests check the accuracy of
+  // labels; this one checks that all labels arrive, in the right size.
   EXPECT_NEAR(sum, ballVolume(15.0), 0.06 * ballVolume(15.0));
 }
 
@@ -188,7 +188,7 @@ class ConvertGrids : public ::testing::Test {
   }
   static const TempFolder& folder() { return *home; }
 
-  /// `share`: tolerance of the volume; `far` [mm]: that of its ends.
+  /// `share`: tolerance of the volume; `far` [mm]: tolerance of the ball's ends.
   static void expectBall(const std::string& name, double share, double far = 0.1) {
     const MeshFile mesh = meshFile(folder().path(name));
     EXPECT_EQ(mesh.open_edges, 0.0) << name;
@@ -200,7 +200,7 @@ class ConvertGrids : public ::testing::Test {
     }
   }
 
-  /// `name`.vdb becomes a grid that can be touched, and that grid a mesh of the ball.
+  /// Converts `name`.vdb to a grid that can be touched, and that grid to a mesh of the ball.
   static void expectGrid(const std::string& name, const std::vector<std::string>& options,
                          double share, double far = 0.1) {
     SCOPED_TRACE(name);
@@ -233,8 +233,8 @@ TEST_F(ConvertGrids, TurnedMirroredAndStretchedGridsAreStraightened) {
 
 TEST_F(ConvertGrids, DensitiesAndMasksGetASurface) {
   expectGrid("fog", {"--above", "0.5"}, 0.015);
-  // The voxels of a mask end half a voxel before the ball where it is widest, in steps of a voxel
-  // of 0.5 mm.
+  // A mask consists of whole voxels, here of 0.5 mm; it ends half a voxel before the ball where the
+  // ball is widest.
   expectGrid("mask", {"--labels", "1"}, 0.05, 0.35);
 }
 

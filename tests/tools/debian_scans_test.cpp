@@ -130,8 +130,8 @@ tissues:
     }
     std::printf("  wall off %+.2f mm along, %+.2f across; depth %.2f mm, nearest outside %.2f mm\n",
                 along, across, depth, nearest);
-    // Centers stay on their side of a smooth wall: across, the wall may be off by half a voxel, and
-    // slightly more where it bends.
+    // A smooth wall keeps each voxel's center on its side. Measured across the wall, it may thus be
+    // off by half a voxel, and by slightly more where it bends.
     EXPECT_NEAR(across, 0.0, 0.7);
     // So the depth is not beyond the nearest center outside, and not more than a voxel's diagonal
     // in front of it.

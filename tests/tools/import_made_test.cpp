@@ -174,7 +174,7 @@ tissues:
   EXPECT_EQ(regionOf(json, "soft")["voxels"], left);
   EXPECT_EQ(regionOf(json, "hard")["voxels"], later);
 
-  // Inside both balls: the later one has it.
+  // A point inside both balls belongs to the later one.
   const Json query = run(folder, {"query", "two.yaml", "--json", "--at", "4,0,0", "-8,0,0"});
   EXPECT_EQ(query["points"][0]["region"], "hard");
   EXPECT_EQ(query["points"][1]["region"], "soft");

@@ -130,7 +130,7 @@ TEST(ImportNames, MeanOtherThingsInOtherCompany) {
                  {"Thalamus_R", "brain"},
                  {"gyrus rectus", "brain"},
                  {"Putamen_L", "brain"}});
-  // Here none of them is.
+  // Here no other name is of the brain.
   expectTissues({{"Rectus_L", "muscle"}, {"rectus_femoris", "muscle"}, {"femur", "bone"}});
   expectTissues({{"angular", ""}, {"femur", "bone"}});
   expectTissues({{"medial rectus", "muscle"},

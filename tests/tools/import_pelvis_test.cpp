@@ -182,7 +182,7 @@ tissues:
         }
       }
     }
-    // Into the body first, and past no layer without touching it.
+    // The hand enters the body first, and skips no layer.
     ASSERT_GE(order.size(), 4U) << "ray " << r;
     EXPECT_EQ(order[0], "outside");
     EXPECT_EQ(order[1], "soft_tissue");

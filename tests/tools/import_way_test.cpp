@@ -258,7 +258,7 @@ TEST(ImportWay, LeadsToAPointThatWasMarkedInSlicer) {
          "goal.mrk.json", "-o", "goal.yaml", "--way", "way.mrk.json", "--force", "--json"},
         folder.path());
   };
-  // In the brain, beside the target: by the opening above, whatever is shortest.
+  // The goal is in the brain, beside the target; the shortest way leads through the opening above.
   const Vec3 goal(3.0, -2.0, 10.0);
   CommandResult result = to({{"P-1", goal}});
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -276,7 +276,7 @@ TEST(ImportWay, LeadsToAPointThatWasMarkedInSlicer) {
     const Vec3 lps = 1e-3 * pointOf(at);
     EXPECT_LT(glm::length(Vec3(-lps.x, -lps.y, lps.z) - pointOf(way[key])), 1e-9) << key;
   }
-  // From an entry, whichever of the two points it is: along that line, open or not.
+  // With an entry, the way follows the line from it, whichever of the two points the entry is.
   const Vec3 entry(6.0, 4.0, 30.0);
   for (const auto& points : {std::vector<std::pair<std::string, Vec3>>{{"", entry}, {"", goal}},
                              {{"Target", goal}, {"", entry}},

@@ -94,8 +94,8 @@ TEST(KeptScenes, WhoeverIsKilledLeavesNothingThatHarms) {
   int killings = 0;
   for (int i = 0; i < 8; ++i) {
     fs::remove_all(folder.path("cache"));
-    // Kill the command when so many grids exist, or at once, and some time later: while a grid is
-    // made or written.
+    // Kill the command some time after this many grids exist (at once if 0), while a grid is made
+    // or written.
     const std::string grids = std::to_string(static_cast<std::size_t>(i) % kGrids);
     const std::string on = std::to_string(0.005 * static_cast<double>(random() % 6));
     const std::string killed =

@@ -39,7 +39,7 @@ TEST(Lump, TheForceRisesOverItAsLayeredElasticityHasIt) {
   for (const double depth : {0.2e-3, 1e-3, 2e-3}) {
     EXPECT_NEAR(felt(scene, 0.06, depth), beside * depth, 0.01 * beside * depth);
     EXPECT_NEAR(felt(scene, 0.0, depth), over * depth, 0.01 * over * depth);
-    // The rise itself, within 5 %; of this, 2 % come from taking the punch's pressure as that on a
+    // The rise itself, within 3 %; of this, 2 % come from taking the punch's pressure as that on a
     // half-space.
     const double rise = felt(scene, 0.0, depth) - felt(scene, 0.06, depth);
     EXPECT_NEAR(rise, (over - beside) * depth, 0.03 * (over - beside) * depth);

@@ -212,7 +212,7 @@ layers:
   const std::vector<std::string> files = allFiles(elsewhere.path("all/files"));
   EXPECT_NE(std::find(files.begin(), files.end(), "mesh_1/buffers/stone.bin"), files.end());
 
-  // What lies elsewhere, or nowhere, cannot be taken along under its name.
+  // A mesh that names a file outside of its own folder cannot be packed.
   fs::create_directories(folder.path("in"));
   (void)folder.file("stone.bin", bytes);
   std::string other = gltf;
@@ -232,7 +232,7 @@ TEST(PackedScenes, SayWhatTheyDoNotHold) {
   importLimb(folder, 2.5);
   ASSERT_EQ(pack(folder, {"limb.yaml", "-o", "limb"}).exit_code, 0);
   fs::remove(folder.path("limb.nii.gz"));
-  // A layer that was not packed.
+  // A layer that was added after packing has no grid in the bundle.
   std::string text = textOf(folder.path("limb/scene.yaml"));
   const std::size_t layers = text.find("\nlayers:");
   ASSERT_NE(layers, std::string::npos);
@@ -245,7 +245,7 @@ TEST(PackedScenes, SayWhatTheyDoNotHold) {
   const CommandResult edited = runPalpate({"explain", "limb/edited.yaml"}, folder.path());
   EXPECT_EQ(edited.exit_code, 3) << edited.err << edited.out;
   EXPECT_NE(edited.err.find("not in the bundle"), std::string::npos) << edited.err;
-  // A picture of the scan, which is elsewhere now.
+  // A picture needs the scan, which is gone.
   const CommandResult drawn =
       runPalpate({"render", "limb", "-o", "a.png", "--image", name}, folder.path());
   EXPECT_EQ(drawn.exit_code, 3) << drawn.err;

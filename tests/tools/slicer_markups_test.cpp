@@ -1,5 +1,5 @@
-// Slicer's Markups files: what is written is read again, what they may say is understood, and
-// damage is refused.
+// Slicer's Markups files: written files are read back, units and coordinate systems are understood,
+// and damage never crashes the reader.
 
 #include "slicer_markups.h"
 

@@ -256,7 +256,7 @@ TEST_F(TouchRecord, AKillInTheMiddleLeavesARecordThatIsWhole) {
       folder_.path(), [&](std::string_view, pid_t process) {
         if (sent) return;
         sent = true;
-        // When some hundred ticks have been written.
+        // Waits until some hundred ticks have been written.
         std::error_code failed;
         EXPECT_TRUE(waitUntil([&] {
           return kill(process, 0) != 0 || (std::filesystem::exists(record, failed) &&
