@@ -39,7 +39,7 @@ class RandomHand {
     const Vec3 out = at_ - proxy;
     const double away = glm::length(out);
     if (away > 0.0 && glm::length(at_ + kStep * heading_ - proxy) > kReach) {
-      // Along the sphere about the proxy, or back inside it.
+      // Turns along the sphere about the proxy, or back inside it.
       const Vec3 inward = -out / away;
       const Vec3 along = heading_ - std::min(glm::dot(heading_, inward), 0.0) * inward;
       heading_ = glm::normalize(along + 0.2 * inward + 0.1 * random_.direction());
@@ -63,8 +63,8 @@ class RandomHand {
       left_ = static_cast<int>(random_.uniform(10, 60));
     } else if (which < 0.8) {
       kind_ = Kind::kPress;
-      // Continue along the pressed wall, which slides into corners; from time to time straight into
-      // the nearest wall.
+      // Goes on along the pressed wall, which leads into corners; from time to time turns straight
+      // into the nearest wall.
       const Vec3 ahead = random_.uniform(0.0, 1.0) < 0.7 ? heading_ : downhill(tree);
       push_ = unitOr(ahead + random_.direction(), heading_);
       depth_ = random_.uniform(0.3, 1.0) * kReach;

@@ -43,12 +43,12 @@ class RestOracle {
   /// A single run with the coarser step, which takes a tenth of the time.
   [[nodiscard]] Rest solveOnce(const Vec3& previous, const Vec3& hip) const;
 
-  /// Where the flow goes from `x` with steps of 1e-6 of the depth, so that even the thinnest walls
-  /// hold it.
+  /// The point to which the flow goes from `x` with steps of 1e-6 of the depth, so that even the
+  /// thinnest walls hold it.
   [[nodiscard]] Vec3 stay(const Vec3& x, const Vec3& hip) const;
 
-  /// [-] Largest relative decrease of |x - P| towards an allowed point `radius` away, by the tree's
-  /// value alone: directions are tried, then refined. Nothing if all of them are closed.
+  /// [-] Largest decrease of |x - P|, as a share of `radius`, towards an allowed point `radius`
+  /// away, by the tree's value alone: directions are tried, then refined. 0 if no point is nearer.
   [[nodiscard]] double gainNear(const Vec3& x, const Vec3& hip, double radius) const;
 
   /// Least curvature of |x - P|^2 / 2 along the walls that hold x, in the worst cell; infinite at a

@@ -25,7 +25,7 @@ TEST_F(MappedDevice, ItsPathIsFeltAsThatOfTheWorldIs) {
   std::string world = "t,x,y,z\n";
   std::string device = "t,device_x,device_y,device_z\n";
   for (int n = 0; n < 400; ++n) {
-    // Into the mouth and around below it, against the bowl.
+    // The path goes into the mouth and around below it, against the bowl.
     const double s = n / 400.0;
     const double x = 0.035 * s * std::sin(9.0 * s);
     const double y = 0.03 * s;

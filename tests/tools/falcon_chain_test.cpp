@@ -166,9 +166,9 @@ TEST_F(FalconChain, InByTheMouthAlongTheWallAndOutAndTheMotorsGiveWhatTheSceneAs
   EXPECT_EQ(runPalpate({"replay", "felt.npy"}, folder_.path()).exit_code, 0);
 }
 
-// Through the incision and the opened dura 15 mm deep into the brain, 14 mm sideways, back against
-// the dura from inside, and on by the first way into the thalamus and out again. In the scene's
-// device frame, whose z points out of the head.
+// The hand goes through the incision and the opened dura 15 mm deep into the brain, 14 mm sideways,
+// back against the dura from inside, and by the first way into the thalamus and out again. The path
+// is in the scene's device frame, whose z points out of the head.
 TEST_F(FalconChain, IntoAScannedHeadAgainstTheDuraFromInsideIntoTheThalamusAndOut) {
   (void)folder_.file("hand",
                      "0.8 0 0 0.042\n1.8 0 0 -0.004\n2.3 0.0037 -0.0135 -0.004\n"

@@ -104,8 +104,8 @@ TEST(ImportFelt, NoWayLeadsIntoBone) {
   std::shuffle(numbers.begin(), numbers.end(), random);
   writeHead(folder, numbers);
   (void)run(folder, {"import", "head.nii.gz", "--names", "names.csv", "-o", "head.yaml", "--json"});
-  // Into the hole and out through the inner side of the skull in all directions, as deep as a hand
-  // can reach.
+  // The path leads into the hole and out through the inner side of the skull in all directions, as
+  // deep as a hand can reach.
   std::vector<Vec3> points;
   for (int n = 0; n < 12; ++n) {
     Vec3 way = vdb::test::direction(random);

@@ -111,7 +111,7 @@ struct Walked {
 
 Walked walked(const TempFolder& folder, const std::string& scene) {
   Walked out;
-  // Along y, and then by 2 mm along z.
+  // The path leads along y, and then by 2 mm along z.
   const CommandResult touch = runPalpate({"touch", scene, "--insert", "0,30,0", "0,-2,0", "0,-2,2",
                                           "--speed", "10mm/s", "--trace", scene + ".csv"},
                                          folder.path());

@@ -161,7 +161,7 @@ TEST(ImportScan, AShellIsFeltOnBothFacesAndItsCoreReachedThroughItAlone) {
   ASSERT_EQ(core["within"], "vertebra shell");
   ASSERT_EQ(core["touches"].size(), 1U);
 
-  // Through the middle of one of the three vertebrae, from three sides and out at the opposite
+  // Rays through the middle of one of the three vertebrae, from three sides and out at the opposite
   // side. Along z the others are 18 mm and more away.
   const Vec3 middle(-25.5, -156.0, -64.2);
   const auto reach = [](int side) { return side / 2 == 2 ? 16.5 : 45.0; };

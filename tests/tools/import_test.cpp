@@ -77,7 +77,7 @@ TEST(Import, AProbeGoesThroughSkinFatAndMuscleAndStopsAtTheBone) {
   EXPECT_EQ(find(json["regions"], "soft_tissue")->at("tissue"), "skin, fat");
   EXPECT_EQ(json["ports"], 2);  // into the skin and the muscle, not into the bone
 
-  // Along y at 10 mm/s: slow enough to neglect damping, so that a wall opens at its force.
+  // The needle moves along y at 10 mm/s, slow enough to neglect damping: a wall opens at its force.
   const CommandResult touch = runPalpate({"touch", "leg.yaml", "--insert", "0,30,0", "0,-9,0",
                                           "--speed", "10mm/s", "--trace", "t.csv", "--json"},
                                          folder.path());

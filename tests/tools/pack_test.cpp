@@ -140,7 +140,7 @@ ports:
   EXPECT_EQ(after.ticks, before.ticks);
 }
 
-/// What a scene answers at some points: in both meshes, in bone and flesh, and far from all.
+/// The answers of a query at some points: in both meshes, in bone and flesh, and far from all.
 std::string answersOf(const TempFolder& folder, const std::string& scene) {
   const CommandResult result =
       runPalpate({"query", scene, "--at", "60,0,0", "61.9,0,0", "80,1,0", "12,-7,30", "20,-7,30",

@@ -107,7 +107,7 @@ TEST_F(TouchRecord, NumPyFindsWhatTheTraceSaysAndItIsFeltAnew) {
       EXPECT_EQ(json["compared"], 1500 - std::stoi(from));
     }
   }
-  // Also from another folder.
+  // A replay works from another folder, too.
   EXPECT_EQ(runPalpate({"replay", folder_.path("r.npy")}).exit_code, 0);
 
   // If results differ, the answer is negative.

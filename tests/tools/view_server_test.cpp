@@ -255,8 +255,8 @@ TEST(PageServer, AFloodIsCutOffAndOthersGoOn) {
   PageLine other(served.server.port());
   ASSERT_TRUE(flood.open(served.server.token()));
   ASSERT_TRUE(other.open(served.server.token()));
-  // So many messages that, however slowly they pass, some second has too many: the server closes
-  // the connection.
+  // Sends so many messages that some second has too many, however slowly they pass; the server then
+  // closes the connection.
   int sent = 0;
   constexpr int kMost = 10'000'000;
   while (sent < kMost && flood.say(R"({"to":[0,0,0]})")) ++sent;

@@ -7,8 +7,8 @@ namespace palpate::tools {
 
 enum class InputKind { kScene, kGrid, kMesh, kImage };
 
-/// By extension; a folder with DICOM files is an image. @throws Error: kInput if the file is
-/// missing, is not a regular file or has an extension that nothing here reads.
+/// Decides by the extension; a folder with DICOM files is an image. @throws Error: kInput if the
+/// file is missing, is not a regular file or has an extension that nothing here reads.
 [[nodiscard]] InputKind inputKind(const std::string& path);
 
 /// `path` without folder and extensions: "ch2" for "a/ch2.nii.gz".

@@ -11,13 +11,13 @@
 
 namespace palpate::tools {
 
-/// From --passivity, --hand-force and --coupling, or else from `mapping`, the scene's `device`.
-/// Without --device, the guards' numbers have to be in the scene or in --coupling. @throws Error
-/// (kUsage).
+/// The guards of --passivity, --hand-force and --coupling, or else of `mapping`, the scene's
+/// `device`. Without --device, their numbers have to be in the scene or in --coupling. @throws
+/// Error (kUsage).
 [[nodiscard]] devices::HandGuards guardsOf(const TouchOptions& options, DeviceMapping mapping,
                                            const std::optional<devices::LoopModel>& loop);
 
-/// After a run: the settings and what they cost; null or empty if none was asked for.
+/// After a run: the settings, and what was measured; null or empty if no guard was asked for.
 [[nodiscard]] Json guardsJson(const devices::HandGuards& guards, const devices::Session& session);
 [[nodiscard]] std::string guardsText(const devices::HandGuards& guards,
                                      const devices::Session& session);

@@ -16,8 +16,8 @@ struct RecordAbout {
   std::string version;  ///< of palpate
   std::string build;    ///< devices::stateBuild()
   std::string scene;    ///< absolute path
-  /// For a mesh, image or grid the scene as which it was touched; for `view` the text of the scene,
-  /// whose file may be edited during the session; else empty.
+  /// For a mesh, image or grid: the text of the scene that was made of it. For `view`: the text of
+  /// the scene, whose file may be edited during the session. Else empty.
   std::string scene_text;
   std::string scene_hash;  ///< sceneHash()
   bool shows_all = false;  ///< whether the scene was compiled for Purpose::kShow
@@ -29,8 +29,8 @@ struct RecordAbout {
   bool realtime = false;
   double period = 0.0;             ///< [s] ForceLimits::period
   std::uint64_t states_every = 0;  ///< [ticks] SessionSettings::checkpoint_every
-  /// As the user gave them: epsilon, halvings, alpha, alpha_form, interior, max_force, slew, ramp,
-  /// set.
+  /// As the user gave them: the parameters of the paper's renderer, the limits of the force, set,
+  /// device, hand, delay, passivity, hand_force, coupling.
   TouchOptions options;
   std::vector<std::string> regions;  ///< names by RegionId
   std::vector<std::string> ports;    ///< names by PortId

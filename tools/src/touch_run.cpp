@@ -20,7 +20,7 @@ std::string hintOf(const std::string& kept, std::uint64_t ticks) {
   return "the ticks until then are in " + kept;
 }
 
-/// Nothing if the path was followed to its end.
+/// The error that ended the run; nothing if the path was followed to its end.
 std::optional<Error> errorOf(const devices::ServoReport& servo, const std::string& hint) {
   const auto fault = [&](const char* code, const std::string& message) {
     return Error(ErrorKind::kDevice, {code, message, hint});

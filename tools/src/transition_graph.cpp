@@ -80,7 +80,7 @@ std::string nodeSvg(const GraphState& state, const Spot& at) {
   return svg;
 }
 
-/// Where the straight line from `from` to `to` leaves the node at `from`.
+/// The point where the straight line from `from` to `to` leaves the node at `from`.
 Spot borderOf(const Spot& from, const Spot& to) {
   const double x = to.x - from.x;
   const double y = to.y - from.y;

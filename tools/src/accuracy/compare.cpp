@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kDegrees = 57.29577951308232;
 
-/// By sine and cosine together, so that small angles keep their digits.
+/// Uses sine and cosine together, so that small angles keep their digits.
 double degreesBetween(const Vec3& a, const Vec3& b) noexcept {
   return kDegrees * std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }

@@ -19,7 +19,7 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Where query times are measured: along the strokes, rising and falling within half the band.
+/// The points of timed queries: along the strokes, rising and falling within half the band.
 std::vector<Vec3> timedPath(const std::vector<Stroke>& strokes, double band) {
   std::vector<Vec3> path;
   for (const Stroke& stroke : strokes) {

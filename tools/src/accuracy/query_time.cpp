@@ -34,7 +34,7 @@ double runIndependent(const Field& field, std::span<const Vec3> path) {
 }
 
 double runDependent(const Field& field, std::span<const Vec3> path) {
-  // So small that no position changes, but neither compiler nor processor can know that.
+  // So small a factor changes no position, but neither compiler nor processor can know that.
   constexpr double kNothing = 1e-40;
   double last = 0.0;
   const auto before = Clock::now();

@@ -100,7 +100,7 @@ Judge boxJudge(Held held) {
       [=](const Vec3& p) { return oracle::boxMinima(p, -kHalfBox, kHalfBox, held); });
 }
 
-/// Along the top face and over its edge, into the side face, and back up over the edge.
+/// A path along the top face and over its edge, into the side face, and back up over the edge.
 ContactCase boxEdge() {
   PathMaker maker(Vec3(0.0, 0.0, 0.012));
   maker.go(Vec3(0.01, 0.0, 0.009), kApproachSpeed);
@@ -131,7 +131,7 @@ ContactCase room() {
                10.0 * kTurn, kStroke, boxJudge(Held::kInside));
 }
 
-/// Around the crease between two balls, to and fro across it.
+/// A path around the crease between two balls, to and fro across it.
 ContactCase crease() {
   const oracle::Ball a{Vec3(-0.02, 0.0, 0.0), 0.03};
   const oracle::Ball b{Vec3(0.02, 0.0, 0.0), 0.03};
@@ -145,7 +145,7 @@ ContactCase crease() {
                judgeByFormula([=](const Vec3& p) { return oracle::twoBallUnionOutside(p, a, b); }));
 }
 
-/// Along the bottom of a groove of 10 degrees, swaying from wall to wall.
+/// A path along the bottom of a groove of 10 degrees, swaying from wall to wall.
 ContactCase groove() {
   const double half = std::numbers::pi / 36.0;
   const Vec3 n1(std::cos(half), 0.0, std::sin(half));
@@ -159,7 +159,7 @@ ContactCase groove() {
       judgeByFormula([=](const Vec3& p) { return oracle::grooveMinima(p, kOrigin, n1, n2); }));
 }
 
-/// Around the waist of two metaballs, where the surface is a saddle.
+/// A path around the waist of two metaballs, where the surface is a saddle.
 ContactCase saddle() {
   const FieldPtr field =
       metaballs({{Vec3(-0.015, 0.0, 0.0), 0.03, 1.0}, {Vec3(0.015, 0.0, 0.0), 0.03, 1.0}},
@@ -203,8 +203,8 @@ void addPortsElsewhere(SceneDescription& scene, std::size_t count) {
   }
 }
 
-/// Into the paper's container through its mouth, around its wall from within, out again, and around
-/// it from outside; in a scene of `ports` ports.
+/// A path into the paper's container through its mouth, around its wall from within, out again, and
+/// around it from outside; in a scene of `ports` ports.
 ContactCase container(std::size_t ports) {
   const double radius = 0.04;
   PathMaker maker(Vec3(0.0, 0.0, 0.03));

@@ -65,7 +65,7 @@ std::string forBash(const std::vector<VerbWords>& verbs,
          "complete -F _palpate palpate\n";
 }
 
-/// In single quotes for a shell.
+/// The text in single quotes for a shell.
 std::string shellWord(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);

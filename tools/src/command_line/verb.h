@@ -27,9 +27,9 @@ struct Verb {
   bool writes = false;  ///< the verb writes files, so that --force has a meaning
 };
 
-/// In the order of `palpate --help`.
+/// All verbs, in the order of `palpate --help`.
 [[nodiscard]] const std::vector<Verb>& verbs();
-/// Null if there is none.
+/// The verb of that name; null if there is none.
 [[nodiscard]] const Verb* findVerb(std::string_view name);
 /// Makes the parser of one verb; it stores its results in `invocation`, which must outlive it.
 [[nodiscard]] std::unique_ptr<CLI::App> makeApp(const Verb& verb, Invocation& invocation);

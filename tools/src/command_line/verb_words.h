@@ -25,7 +25,7 @@ struct VerbWords {
   std::vector<OptionWords> options = {};  ///< in the order of their groups, with --help
 };
 
-/// In the order of `palpate --help`.
+/// All verbs, in the order of `palpate --help`.
 [[nodiscard]] std::vector<VerbWords> verbWords();
 
 /// palpate(1), in the man macros of roff.

@@ -48,7 +48,7 @@ inline constexpr double kClearance = 2e-3;
 [[nodiscard]] NeedleWay needleWay(const ImportedScan& scan, const TissueTable& tissues,
                                   const WayTarget& target, bool through_bone = false);
 
-/// For the scene's header.
+/// The way in the form of the suggestion in the scene's header.
 [[nodiscard]] SuggestedWay suggestedWay(const NeedleWay& way);
 
 /// The way as a line that Slicer loads, from the entry to the target.

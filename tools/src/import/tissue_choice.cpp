@@ -155,7 +155,7 @@ class Chooser {
     return "code " + code.scheme + " " + code.value + " (" + code.meaning + ")";
   }
 
-  /// By the list of codes, or else by the words that accompany the code.
+  /// Decides by the list of codes, or else by the words that accompany the code.
   [[nodiscard]] NameVerdict byCode(const NamedLabels& region) const {
     const std::optional<std::string> tissue =
         agreed(region.labels, [&](int label) -> std::optional<std::string> {

@@ -124,7 +124,7 @@ std::vector<std::string> wordsOf(std::string_view name) {
       ++at;
       continue;
     }
-    // Up to where a capital letter begins a new word: aB, ABc.
+    // A word ends where a capital letter begins a new one: aB, ABc.
     ++at;
     while (at < text.size() && isLetter(text[at])) {
       const bool after_small = !isCapital(text[at - 1]) && isCapital(text[at]);

@@ -12,7 +12,7 @@
 namespace palpate::tools {
 namespace {
 
-/// For a tissue that states no Poisson's ratio: nearly incompressible.
+/// Poisson's ratio of a tissue that states none: nearly incompressible.
 constexpr double kPoisson = 0.45;
 /// Twice Vesic's 0.65: tissue is on both sides of the shaft, whereas a beam on the ground has it on
 /// one side.

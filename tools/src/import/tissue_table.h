@@ -71,9 +71,9 @@ struct TissueTable {
 
   /// The first tissue with a pattern that matches a label's name, or null.
   [[nodiscard]] const Tissue* of(const std::string& label) const;
-  /// By its own name, or null.
+  /// The tissue of this name, or null.
   [[nodiscard]] const Tissue* find(const std::string& name) const;
-  /// For a tissue that has a wall: measured, derived or assumed, with an explanation.
+  /// The wall stiffness of a tissue that has a wall: measured, derived or assumed, and explained.
   [[nodiscard]] SourcedNumber wallStiffness(const Tissue& tissue) const;
   /// The sideways support of a needle's shaft by a tissue that can be cut, per length of the shaft.
   struct Lateral {

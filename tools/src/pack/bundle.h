@@ -14,7 +14,7 @@ inline constexpr const char* kBundleFiles = "files";
 
 [[nodiscard]] bool isBundle(const std::string& folder);
 
-/// Where the grids of a bundle's scene are; empty for any other scene.
+/// The folder of the grids of a bundle's scene; empty for any other scene.
 [[nodiscard]] std::string bundleGridsOf(const std::string& scene_file);
 
 /// Replaces the folder of a bundle by the scene in it, wherever a verb takes a scene.
