@@ -13,7 +13,7 @@ namespace palpate::devices {
 /// Answers read k with `reads[k]` and write k with `writes[k]` (kOk beyond the end), and records
 /// all calls. Position k is (k, 0, 0) [m]; a stale read leaves garbage in its argument, as a
 /// careless driver might.
-class ScriptedDevice final : public Device {
+class ScriptedDevice : public Device {
  public:
   std::vector<DeviceStatus> reads;
   std::vector<DeviceStatus> writes;

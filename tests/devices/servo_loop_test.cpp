@@ -2,6 +2,7 @@
 #include <pthread.h>
 #include <sched.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "palpate/devices/path.h"
 #include "support/alloc_guard.h"
 #include "support/error_of.h"
+#include "support/wait.h"
 
 namespace palpate::devices {
 namespace {
@@ -283,6 +285,45 @@ TEST(RunServo, ElevationIsReportedAndUndone) {
   ASSERT_EQ(pthread_getschedparam(pthread_self(), &policy_after, &after), 0);
   EXPECT_EQ(policy_after, policy);
   EXPECT_EQ(after.sched_priority, before.sched_priority);
+}
+
+/// A virtual device that notes under which policy and priority its force is cut.
+class CutDevice final : public ScriptedDevice {
+ public:
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return limited_; }
+  void cut() noexcept override {
+    sched_param param{};
+    pthread_getschedparam(pthread_self(), &policy, &param);
+    priority = param.sched_priority;
+    is_cut.store(true, std::memory_order_release);
+  }
+  int policy = -1;
+  int priority = -1;
+  std::atomic<bool> is_cut{false};
+
+ private:
+  DeviceInfo limited_ = [] {
+    DeviceInfo info{"hanging", 10.0, {}};
+    info.limits.hang = 0.02;
+    return info;
+  }();
+};
+
+TEST(RunServo, TheThreadThatWatchesALoopWithPriorityStandsAboveIt) {
+  CutDevice device;
+  device.reads = {kOk, kOk};
+  int policy = -1;
+  sched_param own{};
+  const auto hang = [&](const DeviceState& /*state*/) {
+    pthread_getschedparam(pthread_self(), &policy, &own);
+    EXPECT_TRUE(testing::waitUntil([&] { return device.is_cut.load(std::memory_order_acquire); }));
+    return Vec3(0.0);
+  };
+  const ServoReport report =
+      runServo(device, hang, {.realtime = true, .elevate = Elevate::kPrefer}, kNeverStop);
+  // Whether priorities are permitted depends on the user who runs the test; without, it still cuts.
+  EXPECT_EQ(device.policy, policy);
+  EXPECT_EQ(device.priority, own.sched_priority + (report.has_priority ? 1 : 0));
 }
 
 TEST(RunServo, WhatIsRequiredIsGrantedOrTheLoopDoesNotRun) {

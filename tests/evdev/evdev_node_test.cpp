@@ -114,6 +114,27 @@ TEST_F(EvdevNode, ANodeIsOpenedByItsNameOrRefusedWithARemedy) {
   EXPECT_EQ(error.problem().code, "evdev.kind");
 }
 
+TEST_F(EvdevNode, AProgramWithoutInputOpensItAsDescriptorZero) {
+  Node mouse(bed_, 0);
+  makeMouse(mouse);
+  const auto device = makeEvdev({.node = mouse.path()});
+  const int input = dup(0);
+  ::close(0);
+  const auto code = [&]() -> std::string try {
+    device->open();
+    return "";
+  } catch (const Error& error) {
+    return error.problem().code;
+  }
+  ();
+  device->close();
+  if (input >= 0) {
+    dup2(input, 0);
+    ::close(input);
+  }
+  EXPECT_EQ(code, "");
+}
+
 TEST_F(EvdevNode, WithoutOneThatFitsItSaysSo) {
   Node keyboard(bed_, 1);
   keyboard.has_keys.set(KEY_A);

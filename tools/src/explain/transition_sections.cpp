@@ -11,8 +11,6 @@
 // Sections on where the probe can go, and when.
 
 namespace palpate::tools {
-namespace {}  // namespace
-
 void addPorts(const Scene& scene, const SceneDescription& description, Report& report) {
   report.json["ports"] = Json::array();
   for (std::size_t id = 0; id < scene.ports().size(); ++id) {
