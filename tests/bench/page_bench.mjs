@@ -109,7 +109,7 @@ async function moving(page, line) {
     const middle = lo.map((v, i) => (v + hi[i]) / 2);
     const radius = 0.25 * Math.min(hi[0] - lo[0], hi[1] - lo[1]);
     const end = performance.now() + duration;
-    const from = here.space.frames;
+    const from = here.space.drawn;
     const start = performance.now();
     const told = [];
     const drawn = [];
@@ -130,11 +130,11 @@ async function moving(page, line) {
       channel.port1.close();
       if (!isHeard()) break;
       told.push(performance.now() - t);
-      const count = here.space.frames;
-      while (here.space.frames === count) await frame();
+      const count = here.space.drawn;
+      while (here.space.drawn === count) await frame();
       drawn.push(performance.now() - t);
     }
-    return { frames: here.space.frames - from, took: performance.now() - start, told, drawn };
+    return { frames: here.space.drawn - from, took: performance.now() - start, told, drawn };
   }, 1000 * seconds);
   const took = (performance.now() - began) / 1000;
   return {

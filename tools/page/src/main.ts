@@ -146,18 +146,21 @@ class Page {
       const look = this.layers.look(about.name, region, words.regions.length);
       if (surface !== null) this.space.addSurface(region, surface, about.color, look.opacity, look.visible);
     }
-    ++this.shown;
+    if (++this.shown === words.regions.length) this.space.complete();
   }
 
   private showPlace(snapshot: Snapshot, words: SceneWords): void {
     const others = snapshot.pages > 1 ? ` (${snapshot.pages} pages)` : "";
-    let text = "Nobody steers.";
-    if (snapshot.steers) text = "This page steers.";
-    else if (snapshot.steered) text = "Another page steers.";
+    const isReplay = words.mode === "replay";
+    const does = isReplay ? "plays the record" : "steers";
+    let text = `Nobody ${does}.`;
+    if (snapshot.steers) text = `This page ${does}.`;
+    else if (snapshot.steered) text = `Another page ${does}.`;
     if (words.mode === "device") text = "A hand moves the device.";
     byId("steers").textContent = text + others;
     const take = byId("take") as HTMLButtonElement;
-    take.textContent = snapshot.steers ? "Let go" : "Steer";
+    const grasp = isReplay ? "Take over" : "Steer";
+    take.textContent = snapshot.steers ? "Let go" : grasp;
     take.hidden = words.mode === "device";
     take.disabled = !snapshot.steers && snapshot.steered;
   }

@@ -35,7 +35,10 @@ export class Marks {
     this.shaft.visible = false;
     space.add(this.shaft);
     space.add(this.patches);
-    this.box.addEventListener("change", () => (this.patches.visible = this.box.checked));
+    this.box.addEventListener("change", () => {
+      this.patches.visible = this.box.checked;
+      this.space.changed();
+    });
   }
 
   /** Seen through all layers. */
@@ -95,6 +98,7 @@ export class Marks {
       this.patches.add(mesh);
     }
     this.isComplete = true;
+    this.space.changed();
   }
 
   showTick(tick: Tick): void {

@@ -76,14 +76,15 @@ class Slice {
     this.place.value = String(Math.min(Math.max(index, 0), this.words.counts[this.axis]! - 1));
   }
 
-  /** One request at a time: what is wanted meanwhile comes next. */
-  async fetch(): Promise<void> {
+  /** One request at a time: what is wanted meanwhile comes next. True if another slice is shown after it. */
+  async fetch(): Promise<boolean> {
     const wanted = Number(this.place.value);
-    if (!this.box.checked || this.isAsked || wanted === this.shown) return;
+    if (!this.box.checked || this.isAsked || wanted === this.shown) return false;
     this.isAsked = true;
     try {
       const image = await fetchSlice(this.scene, this.axis, wanted);
       if (image !== null) this.put(image, wanted);
+      return image !== null;
     } finally {
       this.isAsked = false;
     }
@@ -155,8 +156,12 @@ export class Slices {
   step(probe: Vector | null): void {
     for (const slice of this.slices) {
       if (probe !== null && this.follows.checked) slice.follow(probe);
-      void slice.fetch();
-      slice.mesh.visible = slice.box.checked && slice.shown >= 0;
+      void slice.fetch().then((isNew) => {
+        if (isNew) this.space.changed();
+      });
+      const isVisible = slice.box.checked && slice.shown >= 0;
+      if (slice.mesh.visible !== isVisible) this.space.changed();
+      slice.mesh.visible = isVisible;
       // The cut lays a slice open that is in its own plane.
       slice.mesh.material.clippingPlanes = this.space.cut === axes[slice.axis] ? [] : this.space.clipping;
     }

@@ -22,6 +22,9 @@ export class Space {
   private readonly camera = new THREE.PerspectiveCamera(35, 1, 1e-4, 100);
   private readonly layers = new THREE.Group();
   private readonly meshes = new Map<number, THREE.Mesh>();
+  /** Surfaces of the scene before an edit, by their layers' names: shown until the new ones are here. */
+  private readonly former = new Map<string, THREE.Mesh>();
+  private readonly names = new Map<number, string>();
   private readonly hip: THREE.Mesh;
   private readonly proxy: THREE.Mesh;
   private readonly told: THREE.Mesh;
@@ -41,8 +44,12 @@ export class Space {
   private distance = 1;
   private azimuth = -Math.PI / 2 + 0.5;
   private elevation = 0.42;
-  /** Number of frames drawn. */
+  /** Number of frames in which the picture was up to date. */
   frames = 0;
+  /** Number of frames that were drawn, because something in them had changed. */
+  drawn = 0;
+  private isStale = true;
+  private felt: { tick: Tick; marks: string } | null = null;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
@@ -95,11 +102,17 @@ export class Space {
     this.scene.add(this.hip, this.proxy, this.told, this.arrow, this.link, this.trail);
   }
 
-  /** Clears the view, and shows the box of `words`. */
+  /** Something that the picture shows has changed. */
+  changed(): void {
+    this.isStale = true;
+  }
+
+  /** Shows the box of `words`. Surfaces of the scene before stay until complete(). */
   begin(words: SceneWords, keepsView: boolean): void {
-    for (const mesh of this.meshes.values()) mesh.geometry.dispose();
+    this.complete();
+    for (const [region, mesh] of this.meshes) this.former.set(this.names.get(region)!, mesh);
     this.meshes.clear();
-    this.layers.clear();
+    words.regions.forEach((region, index) => this.names.set(index, region.name));
     const lo = vectorOf(words.box.lo);
     const hi = vectorOf(words.box.hi);
     this.diagonal = lo.distanceTo(hi);
@@ -126,9 +139,25 @@ export class Space {
     const mesh = new THREE.Mesh(geometry, material);
     // Inner surfaces are drawn first.
     mesh.renderOrder = -region;
+    this.dropFormer(this.names.get(region)!);
     this.meshes.set(region, mesh);
     this.layers.add(mesh);
     this.look(region, opacity, visible);
+  }
+
+  /** All surfaces of the present scene are here. */
+  complete(): void {
+    for (const name of [...this.former.keys()]) this.dropFormer(name);
+    this.changed();
+  }
+
+  private dropFormer(name: string): void {
+    const mesh = this.former.get(name);
+    if (mesh === undefined) return;
+    this.former.delete(name);
+    this.layers.remove(mesh);
+    mesh.geometry.dispose();
+    (mesh.material as THREE.Material).dispose();
   }
 
   look(region: number, opacity: number, visible: boolean): void {
@@ -141,23 +170,46 @@ export class Space {
     material.depthWrite = !isClear;
     material.opacity = opacity;
     mesh.visible = visible && opacity > 0;
+    this.changed();
   }
 
   setCut(cut: Cut): void {
     this.cut = cut;
     this.clipping.length = 0;
     if (cut !== "off") this.clipping.push(this.plane);
+    this.changed();
   }
 
   add(part: THREE.Object3D): void {
     this.scene.add(part);
+    this.changed();
   }
   remove(part: THREE.Object3D): void {
     this.scene.remove(part);
+    this.changed();
+  }
+
+  /** Whether a picture of `tick` would look like the one of the tick before. */
+  private looksAlike(tick: Tick, marks: string): boolean {
+    if (this.felt === null || this.felt.marks !== marks) return false;
+    const before = this.felt.tick;
+    const apart = (a: readonly (number | null)[] | null, b: readonly (number | null)[] | null, most: number) =>
+      a === null || b === null ? a !== b : a.some((v, i) => Math.abs(v! - b[i]!) > most);
+    const dot = 1e-4 * this.distance; // [m] a tenth of a pixel
+    return !(
+      apart(before.hip, tick.hip, dot) ||
+      apart(before.proxy, tick.proxy, dot) ||
+      apart(before.told, tick.told, dot) ||
+      apart(before.force, tick.force, 2e-3)
+    );
   }
 
   showTick(tick: Tick): void {
     if (tick.hip.includes(null)) return;
+    const marks = JSON.stringify([tick.holes, tick.shaft]);
+    if (this.looksAlike(tick, marks)) return;
+    this.felt = { tick, marks };
+    this.changed();
     this.hip.position.set(...(tick.hip as Vector));
     this.proxy.position.set(...tick.proxy);
     this.probe.copy(this.proxy.position);
@@ -191,6 +243,7 @@ export class Space {
   clearTrail(): void {
     this.trailCount = 0;
     this.trail.geometry.setDrawRange(0, 0);
+    this.changed();
   }
 
   private addToTrail(strength: number): void {
@@ -218,9 +271,11 @@ export class Space {
   turn(azimuth: number, elevation: number): void {
     this.azimuth += azimuth;
     this.elevation = Math.min(Math.max(this.elevation + elevation, -1.5), 1.5);
+    this.changed();
   }
   zoom(factor: number): void {
     this.distance = Math.min(Math.max(this.distance * factor, 0.1 * this.diagonal), 8 * this.diagonal);
+    this.changed();
   }
 
   /** `place` moved to the right, up and away from the viewer, by shares of the view's height. */
@@ -244,7 +299,11 @@ export class Space {
       this.renderer.setPixelRatio(ratio);
       this.renderer.setSize(width, height, false);
       this.camera.aspect = width / height;
+      this.changed();
     }
+    ++this.frames;
+    if (!this.isStale) return;
+    this.isStale = false;
     this.camera.near = 0.01 * this.distance;
     this.camera.far = 10 * this.distance + 4 * this.diagonal;
     this.camera.up.copy(up);
@@ -261,7 +320,7 @@ export class Space {
     this.camera.updateMatrixWorld();
     this.placePlane();
     this.renderer.render(this.scene, this.camera);
-    ++this.frames;
+    ++this.drawn;
   }
 
   /** Puts the cutting plane through the probe; the viewer's side is cut away. */
