@@ -36,7 +36,7 @@ struct GridContent {
 struct MeshWays {
   std::function<FieldPtr(const Progress&)> instead =
       {};  ///< tried first; returns null where a grid is needed
-  /// Makes the final field of the grid's field
+  /// Makes the final field from the grid's field
   std::function<FieldPtr(FieldPtr, const LevelSet&)> finish = {};
 };
 

@@ -7,7 +7,7 @@
 
 namespace palpate::vdb {
 
-/// `solid`: of `mesh`, for voxels of `voxel` [m]; `columns`: of `solid`, by MeshSign::kVote.
+/// `solid` was made from `mesh` for voxels of `voxel` [m], `columns` from `solid` by kVote.
 /// @throws Error (kInput, mesh.ambiguous) naming a place that winding number and flood fill judge
 /// differently.
 void requireAgreement(const Mesh& mesh, const Solid& solid, const Columns& columns, double voxel);

@@ -113,7 +113,7 @@ class MeshBaker {
     range_ = voxelRange({bounds.lo * plan_.voxel, bounds.hi * plan_.voxel}, search_, options_.name);
     refuseTooLong();
     requireMemory(estimatedArea(solid_), 1.0, search_);
-    // Of a solid that a flood filled: the remaining walls alone do not tell its inside
+    // The solid with all its walls, if some are dropped: columns_ belongs to that one
     std::optional<Solid> whole;
     if (is_solid) {
       columns_.emplace(solid_, options_.mesh_sign, progress_);

@@ -1,5 +1,5 @@
 #pragma once
-/// What bake() and bakeMesh() share: checked options, the empty grid, memory, parallel work with
+/// Shared by bake() and bakeMesh(): checked options, the empty grid, memory, parallel work with
 /// progress.
 
 #include <openvdb/openvdb.h>

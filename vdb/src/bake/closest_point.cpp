@@ -37,8 +37,8 @@ std::pair<Vec3, Vec3> across(const Vec3& n) noexcept {
   return {u, glm::cross(n, u)};
 }
 
-/// The way from the place of the jet to the point closest to `p` on the zero set of the quadratic
-/// model s + g e + e H e / 2; `apart` is `p` seen from that place.
+/// The vector from the place of the jet to the point closest to `p` on the zero set of the
+/// quadratic model s + g e + e H e / 2; `apart` is `p` seen from that place.
 std::optional<Vec3> onModel(const FieldJet& jet, const Vec3& apart, double voxel) noexcept {
   Vec3 e(0.0);
   for (int step = 0; step < kModelSteps; ++step) {

@@ -109,7 +109,8 @@ void Columns::findRoles(const Solid& solid, const std::vector<Crossing>& crossin
     if (nest.container == kNone) continue;
     const SolidPart& inner = solid.parts[part];
     const SolidPart& outer = solid.parts[nest.container];
-    // A larger part that a smaller one sticks out of is not its cavity; the smaller one may be one.
+    // A part is never the cavity of a smaller part, which then sticks out of it; the smaller part
+    // may be a cavity of this one.
     if (size(part) > size(nest.container)) continue;
     const bool opposite = signOf(inner.volume) != signOf(outer.volume);
     const bool whole = nest.enclosed == nest.crossings;

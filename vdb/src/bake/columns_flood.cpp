@@ -9,8 +9,8 @@
 namespace palpate::vdb {
 namespace {
 
-/// Number of integers between two numbers, both excluded or not: whether a wall that lies on a
-/// voxel counts does not matter here.
+/// Number of integers from `lo` to `hi`. An end that is an integer is a wall on a voxel; whether
+/// that voxel counts does not matter here.
 std::size_t voxelsBetween(double lo, double hi) {
   const double count = std::floor(hi) - std::ceil(lo) + 1.0;
   return count > 0.0 ? static_cast<std::size_t>(count) : 0;

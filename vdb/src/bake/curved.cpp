@@ -224,7 +224,7 @@ class Cutter {
   }
 
   void cut(const Piece& piece) {
-    // The corners, followed by the middles of the sides after them.
+    // The corners, then the middles of the sides that begin at them.
     constexpr std::uint32_t kNone = 0xffffffffU;
     std::array<std::uint32_t, 6> v{};
     std::array<Vec3, 6> at{};
@@ -261,7 +261,8 @@ class Cutter {
         return;
       }
       if (count == 2 && v[3 + n] == kNone) {
-        // The other two meet in `last`; below them is a quadrangle, cut along its shorter diagonal.
+        // The two halved sides meet in `last`. Besides the corner there, a quadrangle is left,
+        // which is cut along its shorter diagonal.
         add(3 + next, last, 3 + last);
         const auto length = [&](std::size_t a, std::size_t b) {
           return glm::distance(solid_.vertices[v[a]], solid_.vertices[v[b]]);

@@ -40,8 +40,8 @@ void forEachEdge(const std::vector<Side>& sides, const Visit& visit) {
   return 0.5 * glm::length(glm::cross(vertices[t[1]] - a, vertices[t[2]] - a));
 }
 
-/// Turns triangles so that neighbors across an edge of two agree: in each patch bounded by edges of
-/// another number, the larger area decides. Returns which triangles were turned.
+/// Turns triangles so that neighbors across edges with two triangles agree; other edges bound the
+/// patches, in each of which the larger area decides. Returns which triangles were turned.
 std::vector<bool> turnAlike(const std::vector<Vec3>& vertices, const std::vector<Side>& sides,
                             std::vector<Triangle>& triangles);
 
@@ -52,9 +52,9 @@ struct Hole {
   double area = 0.0;                ///< of the lid
 };
 
-/// Loops along which triangles run one way only, with triangles that close them: the least area for
-/// loops of up to a hundred corners, beyond that a fan about their middle, which becomes a new
-/// vertex.
+/// Finds loops along which triangles run one way only, and triangles that close them: those of
+/// least area for loops of up to a hundred corners, else a fan about the loop's middle, which
+/// becomes a new vertex.
 [[nodiscard]] std::vector<Hole> closeHoles(std::vector<Vec3>& vertices,
                                            const std::vector<Side>& sides);
 

@@ -38,7 +38,7 @@ std::string inNanoseconds(double ns) {
   return out.data();
 }
 
-/// So many blocks of 8^3 voxels of a grid that was read again are compared with its part.
+/// When a grid is read again, this many of its blocks of 8^3 voxels are compared with its part.
 constexpr std::size_t kBlocksToTellBy = 100;
 
 HybridOptions checked(HybridOptions options) {

@@ -104,7 +104,7 @@ class Spreading {
     const Around around(leaves_, leaf);
     const bool is_inside = isInside(b, leaf, around, place, step);
     const double wall = source_.boxDistance(leaf.positionOf(place) * plan_.voxel) / plan_.voxel;
-    // Leaves reach beyond the band of the whole.
+    // Leaves also contain voxels that are farther from the box than the band.
     if (wall > plan_.half_width + kBeyond) return {place, start, kOutOfReach, is_inside};
     const double nearest = glm::length(start);
     // Beyond a face that cuts, the value is the distance to the face unless the surface is farther

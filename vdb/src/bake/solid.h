@@ -37,7 +37,7 @@ struct Solid {
 /// (mesh.open; only if `sign` is kVote).
 [[nodiscard]] Solid makeSolid(const Mesh& mesh, double voxel, MeshSign sign);
 
-/// Only checked, welded and without doubled triangles: for a shell about the surface.
+/// The mesh, only checked, welded and without doubled triangles: for a shell about the surface.
 [[nodiscard]] Solid makeSurface(const Mesh& mesh, double voxel);
 
 }  // namespace palpate::vdb

@@ -33,7 +33,8 @@ class LeafMaker {
         index < 0 ? nullptr : &leaves_.all()[static_cast<std::size_t>(index)];
     const bool by_wall = domain_.is_cut && wallReaches(origin);
     if (from == nullptr && !by_wall) return nullptr;
-    // Distances are also known some way beyond the faces, to surface that they cut off.
+    // Some distances beyond the faces are known too, to the part of the surface that the faces cut
+    // off: leave them out.
     if (domain_.is_cut && !by_wall && isBeyond(origin)) return nullptr;
     auto leaf = std::make_unique<BandLeaf>(origin, plan_.background, false);
     for (std::size_t n = 0; n < kVoxels; ++n) {

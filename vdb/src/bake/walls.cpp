@@ -68,7 +68,8 @@ void inBatches(std::size_t count, const SolidInside& inside, const Progress& pro
                        });
 }
 
-/// Triangles without cuts, connected across edges of two: all have one use.
+/// Groups triangles without cuts that are connected across edges with two triangles: all triangles
+/// of such a patch have the same use.
 class Patches {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffU;

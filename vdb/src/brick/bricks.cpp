@@ -282,7 +282,7 @@ BrickSurvey surveyBricks(const LevelSet& grid, Sampler sampler, double least_wit
   survey.lipschitz = maker.lipschitz();
   if (survey.bounds.within() >= least_within) return survey;
   // Holes and plates as thin as a voxel are steep, and weaken that bound for the whole grid:
-  // compute it again near the points that do not answer only.
+  // compute it again, only near the points that do not answer.
   std::vector<CellBounds> bounds(map.bricks.size());
   maker.forAll(map.bricks.size(), [&](std::size_t n, const Accessor& accessor, Part& part) {
     Brick brick;

@@ -218,8 +218,9 @@ class Widening {
     return Vec3(std::nan(""));
   }
 
-  /// A distance changes by no more than the length of the step. Outside sharp edges, a wrong guess
-  /// must not exceed what the neighbors allow: contact would leap into the wall.
+  /// A distance changes by no more than the length of the step. On the outside of a sharp edge a
+  /// guess may be wrong, but it must not exceed what the neighbors allow: otherwise contact would
+  /// leap into the wall.
   void lower() {
     const Tree before(tree_);
     forLeaves([&](Leaf& leaf, Offsets::LeafNodeType&) {

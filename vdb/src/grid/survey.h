@@ -14,12 +14,12 @@ struct Survey {
   double steepest = 0.0;      ///< largest |gradient| of the trilinear interpolant [-]
 };
 
-/// [units] The value that a voxel outside the band counts as. Its distance is at least the half
-/// width, but between such voxels the surface can be nearer than the mean of their values says. The
-/// distance to something at a distance rho has curvatures of at most 1 / rho along two axes.
-/// Trilinear means are off by voxel^2 / 8 times that (counted for three axes, to be safe, and no
-/// cell is farther from its voxels than 0.87); those of the cubic spline by voxel^2 / 6, with
-/// voxels up to 3.5 away.
+/// [units] The value that stands for each voxel outside the band: the half width less the error of
+/// interpolation, because between such voxels the surface can be nearer than their values. At rho
+/// from the surface, distances have curvatures of at most 1 / rho along two axes. Trilinear values
+/// are off by voxel^2 / 8 times the curvatures (counted for three axes, to be safe, at a rho of the
+/// half width less 0.87 voxel), the cubic spline by voxel^2 / 6 times them (at the half width less
+/// 3.5).
 [[nodiscard]] float plateauOf(const LevelSetInfo& info, Sampler sampler) noexcept;
 
 /// `plateau` [units] is used as the absolute value of every voxel that is not active.

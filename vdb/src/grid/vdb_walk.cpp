@@ -297,7 +297,8 @@ class VdbWalk::Impl {
     if ((compression_ & (kBlosc | kZip)) == 0) return bytes_.skip(plain);
     const auto packed = bytes_.take<std::int64_t>();
     if (packed <= 0) {
-      // Not packed; OpenVDB reads that many bytes before it compares the count.
+      // Not packed, and -packed is the size: OpenVDB reads that many bytes before it checks the
+      // size.
       if (packed != -plain) fail("a number of voxels that differs from that of its tree");
       return bytes_.skip(plain);
     }

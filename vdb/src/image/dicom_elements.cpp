@@ -102,8 +102,8 @@ class Walker {
     if (explicit_) {
       if (at_ + 4 > bytes_.size()) failShort();
       vr = std::string_view(bytes_).substr(at_, 2);
-      // All types (VR) of PS3.5, table 6.2-1. For any other type the format of its length is
-      // unknown.
+      // All types (VR) of PS3.5, table 6.2-1, whose lengths have 2 or 4 bytes. For any other type
+      // the format of the length is unknown.
       constexpr std::array<std::string_view, 21> kShort = {
           "AE", "AS", "AT", "CS", "DA", "DS", "DT", "FL", "FD", "IS", "LO",
           "LT", "PN", "SH", "SL", "SS", "ST", "TM", "UI", "UL", "US"};

@@ -184,7 +184,7 @@ Stack stackOf(const std::vector<Slice>& slices, const std::string& path) {
   return out;
 }
 
-/// [degrees] between the way from slice to slice and their normal.
+/// [degrees] The angle between the step from slice to slice and the slices' normal.
 double shearOf(const Slice& first, const Vec3& step) {
   const Vec3 normal = glm::cross(first.along_row, first.along_column);
   return std::acos(std::clamp(glm::dot(glm::normalize(step), normal), -1.0, 1.0)) * kDegrees;

@@ -17,8 +17,8 @@ struct DicomSeries {
   std::array<int, 3> size{};          ///< of the image, resampled or not
   Place place;                        ///< [m], RAS, of the image
   std::vector<std::string> notes;
-  /// Given if the slices have to be resampled to be that image: the voxels it has, and where each
-  /// slice lies.
+  /// Has a value if the image is resampled from the slices: its voxels. `places` then says where
+  /// each slice lies.
   std::optional<EvenSlices> even = {};
   std::vector<SlicePlace> places = {};
 };

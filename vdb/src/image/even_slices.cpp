@@ -58,7 +58,7 @@ class SliceReader {
   int rows_;
 };
 
-/// The first and the last voxel that any slice reaches, when the slices are shifted so.
+/// The first and the last voxel that any slice reaches; slices are shifted by `least` to `most`.
 std::array<int, 2> reach(double least, double most, int count) {
   return {static_cast<int>(std::floor(least + kRounding)),
           static_cast<int>(std::ceil(most - kRounding)) + count - 1};
@@ -131,7 +131,8 @@ std::vector<float> resampled(const EvenSlices& even, const std::vector<SlicePlac
 
 std::optional<double> linearError(const std::vector<SlicePlace>& slices, std::size_t slice_size,
                                   const std::vector<float>& values) {
-  // Shares of the widest gap within which others count as wide.
+  // Two slices count as being as far apart as the widest gap if their distance is from kLeast to
+  // kMost times the widest gap.
   constexpr double kLeast = 0.95;
   constexpr double kMost = 1.3;
   double widest = 0.0;

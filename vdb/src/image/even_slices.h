@@ -1,5 +1,5 @@
 #pragma once
-/// A series whose slices are uneven, or not stacked straight, resampled on voxels that are.
+/// Resamples slices that are unevenly spaced, or not stacked straight, onto evenly spaced voxels.
 
 #include <array>
 #include <cstddef>
@@ -18,10 +18,10 @@ struct SlicePlace {
 };
 
 /// The new voxels. Along the normal they are evenly spaced from the first slice to the last, about
-/// as far apart as most slices are; across it they hold all that a slice holds.
+/// as far apart as most slices are; across it they cover every slice.
 struct EvenSlices {
   std::array<int, 3> size{};
-  Place place;           ///< [unit of the one given]
+  Place place;           ///< [unit of the `place` given]
   double step = 0.0;     ///< [mm] along the normal
   int first_column = 0;  ///< [voxels] of the first slice, at which the new ones begin; 0 or less
   int first_row = 0;
@@ -38,10 +38,10 @@ struct EvenSlices {
                                            const std::vector<SlicePlace>& slices, int columns,
                                            int rows, const std::vector<float>& values);
 
-/// [values] How far linear values may be off between the two slices that are farthest apart, RMS,
-/// as the slices themselves show: those between any two slices that are as far apart are compared
-/// with the linear values there. For slices that are stacked straight; none if there are no such
-/// two.
+/// [values] RMS error of linear values between the two neighbors that are farthest apart, as the
+/// slices themselves show it: where two slices with others between them are about as far apart,
+/// these others are compared with the linear values at their places. For slices that are stacked
+/// straight. Nothing if there are no two such slices.
 [[nodiscard]] std::optional<double> linearError(const std::vector<SlicePlace>& slices,
                                                 std::size_t slice_size,
                                                 const std::vector<float>& values);

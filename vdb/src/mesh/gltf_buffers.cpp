@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kJsonBegins = 20;  ///< of a GLB file, whose first part is its JSON text
 
-/// Looks through JSON text for what stands at buffers[*].uri, however deep the rest goes.
+/// Finds the values at buffers[*].uri in JSON text, however deep the rest of it is nested.
 class Buffers {
  public:
   explicit Buffers(std::string_view json) : json_(json) {}
@@ -31,14 +31,14 @@ class Buffers {
       }
       if (c == '{' || c == '[') ++depth_;
       ++at_;
-      // Behind its JSON a GLB file holds anything.
+      // In a GLB file any bytes may follow the JSON text.
       if ((c == '}' || c == ']') && --depth_ <= 0) break;
     }
     return std::move(names_);
   }
 
  private:
-  /// A text is a key if a colon follows.
+  /// Reads a text in quotes; it is a key if a colon follows.
   void text() {
     const std::size_t begin = ++at_;
     while (at_ < json_.size() && json_[at_] != '"') at_ += json_[at_] == '\\' ? 2 : 1;
@@ -46,7 +46,7 @@ class Buffers {
     const std::string_view found = json_.substr(begin, at_ - begin);
     at_ = std::min(json_.find_first_not_of(" \t\r\n", at_ + 1), json_.size());
     const bool is_key = at_ < json_.size() && json_[at_] == ':';
-    // The outermost object, the list, and an object in it.
+    // Depth 1 is the outermost object, 2 the list of buffers, 3 an object in that list.
     if (is_key && depth_ == 1) is_in_buffers_ = found == "buffers";
     if (!is_key && depth_ == 3 && is_in_buffers_ && key_ == "uri" && !found.starts_with("data:")) {
       names_.push_back(plain(found));
@@ -54,8 +54,8 @@ class Buffers {
     if (is_key) key_ = found;
   }
 
-  /// Without the backslashes of JSON; a character that is written as a number stays as it is, and
-  /// then there is no such file.
+  /// Removes the backslashes of JSON. A character that is written by its number stays as it is;
+  /// then no file has that name.
   static std::string plain(std::string_view text) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {

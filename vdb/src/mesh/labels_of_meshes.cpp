@@ -84,7 +84,8 @@ bool fill(const Mesh& mesh, const Image& image, const First& first, const Progre
   return solid.was_closed;
 }
 
-/// Runs `work`; an error about the mesh's inside names a remedy that an import has.
+/// Runs `work`; an error about the mesh's inside gets a hint with a remedy that also works for an
+/// import.
 template <typename Work>
 void withRemedy(double voxel, const Work& work) try {
   work();

@@ -21,7 +21,7 @@ constexpr double kBeside = 1.8;  ///< voxels that share a corner
 /// for a smooth surface. A smaller value would bend curved surfaces. For voxels that are not cubes,
 /// the unit is their diagonal.
 constexpr double kSlack = 1.3;
-/// Where the surface between two voxels is at first.
+/// Share of the step between two voxels at which the surface is assumed at first.
 constexpr double kHalf = 0.5;
 
 struct Offset {

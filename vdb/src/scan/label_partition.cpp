@@ -197,9 +197,9 @@ float LabelPartition::shiftOf(std::size_t index, const Progress& progress) {
   if (neighbors.empty()) return *(shift = 0.0F);
   const Limits limits = limitsOf(index, neighbors, progress);
   const MaskedBand& own = cached(layers_[index], progress);
-  // A number subtracted from the layer's own values changes its share by half of that, so that only
-  // half the way is covered. For the other half, lines through thin layers would give wrong
-  // volumes, and neighbors move as well.
+  // Subtracting a number from the layer's own values changes its share by half of the number, so
+  // that the volume is corrected half-way only. More would not be better: lines through thin layers
+  // give wrong volumes, and neighbors move as well.
   shift = shiftToVolumeOf(own.band, own.mask, own.excess, [&](float value, int x, int y, int z) {
     return shared(value, limits.leastAt(x, y, z), limits.whole->band.valueAt(x, y, z));
   });

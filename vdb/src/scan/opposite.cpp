@@ -9,7 +9,8 @@ namespace {
 constexpr int kWide = Opposite::kSide + 2 * Opposite::kReach;
 constexpr int kWindow = 2 * Opposite::kReach + 1;
 
-/// Least squares of eight voxels side by side, and the same in voxels.
+/// For eight voxels side by side: the smallest squared distance so far [steps^2], and the squared
+/// distance to the same voxel [voxels^2].
 struct Row {
   alignas(32) float square[8];
   alignas(32) float voxels[8];

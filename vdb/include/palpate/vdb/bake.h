@@ -45,7 +45,7 @@ struct BakeOptions {
   /// Entries for the grid's metadata: source, layer, ...
   std::map<std::string, std::string> metadata = {};
   MeshSign mesh_sign = MeshSign::kVote;  ///< of bakeMesh()
-  /// [m] of bakeMesh(): if positive, the mesh is not a solid but a surface, closed or not, in the
+  /// [m] for bakeMesh(): if positive, the mesh is not a solid but a surface, closed or not, in the
   /// middle of a shell of that thickness.
   double shell_thickness = 0.0;
   /// [rad] for bakeMesh(), up to pi: if positive, facets that meet at less than this angle become
@@ -145,7 +145,7 @@ struct Hybrid {
                                                const Progress& progress = {});
 
 /// Rebuilds what an earlier bakeHybrid() made of `field` from its grids: each grid replaces the
-/// part that the map names it by; all else stays analytic. `within` as in HybridOptions.
+/// part whose name is its key in `grids`; all else stays analytic. `within` as in HybridOptions.
 /// @throws Error (kInput) if there is no such part, or if a grid is off its part by more than
 /// smoothGridError() and the tolerance it was made with, which shows that it was made from another
 /// field (a hundred blocks of the grid are compared); kOperation if a grid with its bricks would

@@ -42,7 +42,7 @@ struct PALPATE_EXPORT Image {
   Vec3 origin{0.0, 0.0, 0.0};  ///< [m] center of voxel (0, 0, 0)
   std::vector<std::string>
       notes;               ///< what was assumed ("unit code 0 taken as mm"), to be reported once
-  LabelTable labels = {};  ///< out of the file itself
+  LabelTable labels = {};  ///< read from the file itself
 
   /// The value of voxel (i, j, k). The indices are not checked.
   [[nodiscard]] float at(int i, int j, int k) const noexcept {
@@ -80,10 +80,10 @@ struct ImageOptions {
   /// DICOM series: slices that are unevenly spaced, off one line or sheared become voxels with
   /// right angles; values between slices are linear. Without it the first two are refused.
   bool resample = false;
-  /// Further files: the first file and each of these is a mask, each for a structure of its own.
+  /// Further files: the first file and these are masks, one structure each.
   std::vector<std::string> with = {};
-  /// Structures that were segmented one by one: where some overlap, the first of these names gets
-  /// the voxel. Where none of these is involved, the structure with fewer voxels gets it.
+  /// Names of structures that were segmented one by one. Where some of them overlap, the one listed
+  /// first gets the voxel; where none is listed, the one with fewer voxels.
   std::vector<std::string> priority = {};
 };
 
@@ -97,7 +97,7 @@ struct ImageInfo {
   std::vector<std::string> notes;  ///< as Image::notes
   std::string format = {};         ///< "NIfTI-1", "NRRD", "MetaImage", "DICOM series"
   std::string length_unit = {};    ///< of the file: "mm"
-  LabelTable labels = {};          ///< out of the file itself
+  LabelTable labels = {};          ///< read from the file itself
   bool is_labels = false;          ///< the file says so, or has a table of names
 };
 

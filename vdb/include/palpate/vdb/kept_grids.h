@@ -25,7 +25,7 @@ struct BundleOptions {
   bool fills = false;  ///< all grids that may be kept go there, too
 };
 
-/// registerKinds() for a scene that is in a bundle, or that one is made of.
+/// registerKinds() for a scene in a bundle, or for one that a bundle is made of.
 PALPATE_EXPORT void registerKinds(SceneRegistry& registry, const RegisterOptions& options,
                                   const BundleOptions& bundle);
 

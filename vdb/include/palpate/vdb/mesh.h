@@ -22,7 +22,7 @@ struct Mesh {
   std::vector<Vec3> vertices;  ///< [m]
   /// Indices into `vertices`; counterclockwise as seen from outside if they wind outwards.
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::size_t dropped_triangles = 0;  ///< by readMesh(): two corners in one point
+  std::size_t dropped_triangles = 0;  ///< by readMesh(), for two corners in one point
   Space space = Space::kRas;  ///< set by readMesh(): the file's space; vertices are RAS in any case
   /// Set by readMesh(): the file stated its space, as 3D Slicer writes it
   bool space_is_stated = false;
@@ -73,7 +73,7 @@ enum class MeshFormat {
   kGlb,  ///< binary glTF 2.0; floats, always in meters, axes as they are
 };
 
-/// By the file's extension, in any case. @throws Error (kInput) for any other.
+/// The format that the extension names, in any case. @throws Error (kInput) if it names none.
 [[nodiscard]] PALPATE_EXPORT MeshFormat meshFormat(const std::string& path);
 
 /// The file's bytes, in units of `meters_per_unit`; kGlb is in meters, whatever that says.
@@ -104,8 +104,8 @@ inline constexpr std::size_t kMostFlatFaces = 64;
 struct SharpField {
   FieldPtr field;                ///< the baked field itself if there is no sharp edge
   std::size_t edges = 0;         ///< sharp sides of triangles
-  std::size_t left_to_grid = 0;  ///< of these, because a wall lies inside the solid there
-  Vec3 place{0.0};               ///< [m] of one such edge
+  std::size_t left_to_grid = 0;  ///< of these, those where a wall lies inside the solid
+  Vec3 place{0.0};               ///< [m] on one such wall
 };
 
 /// `baked`, the field of a grid of `mesh` with voxels of `voxel` [m], except within four voxels of
@@ -130,10 +130,10 @@ struct NamedMesh {
   Mesh mesh;         ///< its surface
 };
 
-/// Meshes, a structure each, as a label image with axes along R, A, S and cubic voxels of `voxel`
-/// [m], two of them free on every side. A voxel is of a mesh if its center is inside, as bakeMesh()
-/// tells inside from outside by MeshSign::kVote, so that surfaces are met within half a voxel's
-/// diagonal. Labels run from 1 in the meshes' order. Where meshes overlap, the one that `priority`
+/// Meshes, one structure each, as a label image with axes along R, A, S, cubic voxels of `voxel`
+/// [m] and two free voxels on every side. A voxel belongs to a mesh if its center is inside by
+/// MeshSign::kVote (see bakeMesh()), so the labels' border is within half a voxel's diagonal of the
+/// surface. Labels run from 1 in the meshes' order. Where meshes overlap, the one that `priority`
 /// names first has the voxel; else the one of fewer voxels.
 /// @throws Error: kInput, codes "models.*": two of one name, an image of more than 2^31 voxels;
 /// mesh.open and mesh.ambiguous as bakeMesh(); labels.priority; kCancelled.

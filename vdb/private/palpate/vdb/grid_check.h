@@ -46,9 +46,9 @@ struct GridCheck {
   /// active.
   VoxelDefect band_holes;
   double volume = 0.0;  ///< [m^3] of the negative region, voxels on the surface by their share
-  /// As the cubic sampler reads it, if it is not refused: why contact would not take it,
+  /// Unless the grid is refused, for the cubic sampler: why contact would not take the grid,
   std::optional<Problem> uncertified;
-  /// or the certificate that contact relies on, and what is done to the grid first.
+  /// or else the certificate that contact relies on, and the repairs that this took.
   std::optional<BandCertificate> certificate;
   std::vector<std::string> repairs;
 };
