@@ -31,7 +31,7 @@ class HandPath {
   [[nodiscard]] double begin() const { return live_ ? 0.0 : row(0).t; }
   [[nodiscard]] double end() const { return live_ ? live_->end : row(size() - 1).t; }
 
-  /// The next time may be any.
+  /// After this, at() may be called with any time again.
   void rewind() {
     next_ = 0;
     from_ = to_ = row(0);

@@ -15,8 +15,8 @@ namespace palpate::devices {
   return now - beat >= longest;
 }
 
-/// While it exists, and while the last beat() is too old, it calls the device's cut() again and
-/// again, since a device may not remember it. One thread calls beat() and cuts().
+/// While this object exists and the last beat() is too old, it calls the device's cut() again and
+/// again, since a device may forget an earlier cut. One thread calls beat() and cuts().
 class HangWatch {
  public:
   /// `longest` [ns] is permitted between two beats; with the largest possible number no thread is
@@ -28,7 +28,7 @@ class HangWatch {
   HangWatch(const HangWatch&) = delete;
   HangWatch& operator=(const HangWatch&) = delete;
 
-  // Real time.
+  // The functions from here on are real-time safe.
 
   /// A turn of the loop ended at `now` [ns, monotonic].
   void beat(std::int64_t now) noexcept { beat_.store(now, std::memory_order_release); }

@@ -22,8 +22,8 @@ bool isSame(const Other& a, const Other& b) noexcept {
   return a == b;
 }
 
-/// Compares everything that determines or results from a tick, but not what a clock or the loop's
-/// writing adds.
+/// Compares everything that goes into a tick or results from it, but not the columns that a clock
+/// or the loop's writing fills.
 std::string differences(const TickRecord& a, const TickRecord& b) {
   std::string names;
   const auto look = [&](const auto& left, const auto& right, const char* name) {
@@ -74,7 +74,7 @@ class Numbers {
 
  private:
   using List = std::vector<std::uint16_t>;
-  /// The number of nothing: compile() refuses so many regions and ports.
+  /// Stands for a name without a match: compile() refuses scenes with that many regions or ports.
   static constexpr std::uint16_t kNone = 0xffff;
 
   template <typename Named>

@@ -128,7 +128,7 @@ void RowFile::flush() {
   try {
     out_.append(rows_.data(), rows_.size() * sizeof(TickRecord), sizeof(TickRecord));
   } catch (const Error&) {
-    promise();  // of the rows for which there was room
+    promise();  // counts the rows for which there was room
     throw;
   }
   rows_.clear();

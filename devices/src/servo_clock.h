@@ -1,5 +1,5 @@
 #pragma once
-// What the servo loop requests from the operating system.
+// The servo loop's requests to the operating system: time, sleep, priority, locked memory.
 
 #include <atomic>
 #include <cstdint>

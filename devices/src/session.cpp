@@ -367,7 +367,8 @@ bool Session::resume(const SessionState& state) noexcept {
   ticks_ = state.ticks;
   last_time_ = state.last_time;
   has_begun_ = state.has_begun;
-  // The state was taken before a tick that begins with taking it again: so does the next tick here.
+  // The state was taken at the beginning of a tick. The next tick here begins by taking it again,
+  // as that tick did, so that both go on alike.
   return true;
 }
 

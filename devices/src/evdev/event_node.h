@@ -1,5 +1,5 @@
 #pragma once
-// An event node of the kernel, and what can be asked of it.
+// An event node of the kernel, and the queries that it answers.
 
 #include <linux/input.h>
 
@@ -30,7 +30,7 @@ class EventNode {
   /// Makes its events carry times of the monotonic clock; false if the kernel refuses.
   [[nodiscard]] bool setMonotonic() const noexcept;
 
-  // Real time.
+  // The functions from here on are real-time safe.
   [[nodiscard]] bool value(std::uint16_t absolute_code, std::int32_t& out) const noexcept;
   [[nodiscard]] bool keys(std::bitset<KEY_CNT>& out) const noexcept;
   /// Like read(): returns the bytes of whole events, or -1 with errno.

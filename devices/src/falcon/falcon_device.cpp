@@ -229,7 +229,7 @@ DeviceStatus FalconDevice::read(DeviceState& out) noexcept {
   for (int i = 0; i < kReads && !reply; ++i) {
     const Status status = receive(reply, kReadWait);
     if (status == Status::kGone) return DeviceStatus::kDisconnected;
-    // Any other failure counts as a lost packet; if they go on, no reply comes and the loop
+    // Any other failure counts as a lost packet; if more are lost, no reply comes and the loop
     // releases the force.
   }
   if (!reply) {

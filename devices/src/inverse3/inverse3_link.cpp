@@ -107,8 +107,8 @@ class Link::Work {
     beast::get_lowest_layer(socket_).socket().close(ignored);
   }
 
-  /// Disconnects after kConnectTime, unless it is set again or canceled. It is a separate timer:
-  /// that of the stream must not be set while the stream reads or writes.
+  /// Disconnects after kConnectTime, unless the deadline is set again or canceled. It has a timer
+  /// of its own, because the stream's timer must not be set while the stream reads or writes.
   void setDeadline() {
     deadline_.expires_after(kConnectTime);
     deadline_.async_wait([this](const error_code& canceled) {
@@ -161,7 +161,7 @@ class Link::Work {
     if (is_up_) return;
     id_ = message->id;
     deadline_.cancel();
-    send();  // The service answers only messages. This one goes before any that write() asks for.
+    send();  // The service only answers messages, so send one before write() asks for any.
     is_up_ = true;
     first_.set_value();
   }

@@ -96,10 +96,10 @@ using ServoTick = std::function<Vec3(const DeviceState&)>;
 /// The outcome of one tick's force.
 struct ServoTurn {
   Vec3 written{0.0, 0.0, 0.0};  ///< [N] to the device
-  double share = 1.0;           ///< [-] of the force that was passed on: below 1 after the watchdog
+  double share = 1.0;           ///< [-] share of the force passed on; below 1 after the watchdog
   bool is_stale = false;        ///< the tick got the previous reading again
-  bool is_zeroed = false;       ///< it was not finite: written as zero
-  bool is_shortened = false;    ///< it was shortened to the device's maximum
+  bool is_zeroed = false;       ///< the force was not finite: zero was written
+  bool is_shortened = false;    ///< the force was shortened to the device's maximum
   bool is_late = false;         ///< the tick ended after the next one was due (realtime only)
 };
 
@@ -107,7 +107,7 @@ struct ServoTurn {
 /// without `realtime` it may block.
 using ServoObserver = std::function<void(const ServoTurn&)>;
 
-/// What the loop requests from the operating system.
+/// Whether the loop requests real-time priority and locked memory from the operating system.
 enum class Elevate : std::uint8_t {
   kOff,      ///< nothing
   kPrefer,   ///< try; the report lists what was refused
@@ -151,7 +151,7 @@ struct ServoReport {
   double worst_lateness = 0.0;       ///< [s] of a tick's start (realtime only)
   bool has_priority = false;         ///< ran with a real-time priority because of `elevate`
   bool has_locked_memory = false;    ///< ran with locked memory because of `elevate`
-  bool elevated = false;             ///< both
+  bool elevated = false;             ///< has_priority and has_locked_memory
   int priority_error = 0;            ///< errno of a refused priority
   int memory_error = 0;              ///< errno of refused locked memory
   std::uint64_t zeroed = 0;          ///< forces that were not finite and were written as zero

@@ -1,5 +1,5 @@
 #pragma once
-/// What a user has to know about a device that a hand holds.
+/// Facts for the user of a device: a notice, and the udev rule that gives access to it.
 
 #include <cstdint>
 #include <string>

@@ -67,7 +67,7 @@ struct InputDevice {
 /// All event nodes, by their number.
 [[nodiscard]] PALPATE_EXPORT std::vector<InputDevice> listInputDevices();
 
-/// What a user has to do to be permitted to open them.
+/// The remedy for a user who is not permitted to open input devices, as a text.
 [[nodiscard]] PALPATE_EXPORT std::string inputAccessRemedy();
 
 }  // namespace palpate::devices

@@ -38,8 +38,8 @@ struct PassivitySettings {
 ///
 /// A force f that is held from one tick to the next does exactly the work f . (x_k - x_{k-1}),
 /// however the hand moved in between. (f_k . v_k T, with the velocity of the tick that computes
-/// f_k, is wrong by K times the sum of the squared steps, and would call a loop passive that gives
-/// energy away.) Two things that a real device surely dissipates are credited against that: viscous
+/// f_k, is wrong by K times the sum of the squared steps: a loop that gives energy away would pass
+/// as passive.) Two things that a real device surely dissipates are credited against that: viscous
 /// damping b dissipates b |x_k - x_{k-1}|^2 / T or more, friction f_c dissipates f_c |x_k -
 /// x_{k-1}| or more.
 class PALPATE_EXPORT PassivityObserver {
@@ -74,7 +74,7 @@ class PALPATE_EXPORT PassivityObserver {
   /// [J] The possible error of given() because readings come in steps of the encoder: half a step
   /// times the changes of the force along each axis.
   [[nodiscard]] double doubt() const noexcept { return doubt_; }
-  /// [m] The way from the position before last to the last.
+  /// [m] The displacement of the tip between the last two calls of add().
   [[nodiscard]] const Vec3& moved() const noexcept { return moved_; }
   /// [N] the force held until the last add().
   [[nodiscard]] const Vec3& held() const noexcept { return held_; }
@@ -82,7 +82,7 @@ class PALPATE_EXPORT PassivityObserver {
  private:
   double damping_ = 0.0;
   double friction_ = 0.0;
-  double unsure_ = 0.0;     ///< [m] uncertainty of a way between two readings, by the encoder
+  double unsure_ = 0.0;     ///< [m] error of a step between two readings, due to the encoder
   double half_step_ = 0.0;  ///< [m] half a step of the encoder
   double max_force_ = 0.0;
   int delay_ = 0;

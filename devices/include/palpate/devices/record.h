@@ -128,12 +128,12 @@ struct TickRecord {
   std::array<std::uint16_t, kEvents> events{};  ///< PortId of each that was passed, in order
   std::uint8_t contact = 0;                     ///< 0 or 1, like all that follow
   std::uint8_t settled = 0;                     ///< TickResult::settled
-  std::uint8_t clutch = 0;                      ///< it is held
+  std::uint8_t clutch = 0;                      ///< the clutch is held
   std::uint8_t checkpoint = 0;  ///< the session's checkpoint was taken before this tick
   std::uint8_t stale = 0;       ///< the previous reading was used again
   std::uint8_t zeroed = 0;      ///< the force was not finite, or answered a reading that was not
   std::uint8_t shortened = 0;   ///< the force was shortened to the device's maximum
-  std::uint8_t late = 0;        ///< it ended after the next tick was due
+  std::uint8_t late = 0;        ///< this tick ended after the next one was due
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
 static_assert(sizeof(TickRecord) == 288, "the file has no gaps between the columns");
@@ -210,7 +210,7 @@ class PALPATE_EXPORT RecordReader {
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
   /// Number of rows that the header promises; more than size() if the file was truncated.
   [[nodiscard]] std::uint64_t promised() const noexcept { return promised_; }
-  /// The next row is the first whose number is not below `tick`.
+  /// Moves to the first row whose number is not below `tick`: next() then reads that row.
   void seek(std::uint64_t tick);
   /// Reads the next row; false at the end. @throws Error (kInput, record.unreadable).
   [[nodiscard]] bool next(TickRecord& row);
@@ -257,8 +257,8 @@ class PALPATE_EXPORT StateReader {
 
 /// The differences between a record and its replay.
 struct ReplayReport {
-  std::uint64_t ticks = 0;      ///< number that the session made
-  std::uint64_t compared = 0;   ///< of these
+  std::uint64_t ticks = 0;      ///< ticks that the session made
+  std::uint64_t compared = 0;   ///< of these, ticks that were compared
   std::uint64_t different = 0;  ///< of these, those that are not the same bit for bit
   /// A tick that differs.
   struct First {
@@ -267,11 +267,11 @@ struct ReplayReport {
     std::string what;        ///< columns of TickRecord, separated by ", "
   };
   std::optional<First> first;  ///< the first tick that is different
-  /// [N] largest difference between forces after their limits; infinite: one is not finite
+  /// [N] largest difference between forces after their limits; infinite if one is not finite
   double most_force = 0.0;
-  std::uint64_t most_force_tick = 0;  ///< the tick in which that is; 0 if no force differs
+  std::uint64_t most_force_tick = 0;  ///< the tick of that difference; 0 if no force differs
   double most_proxy = 0.0;            ///< [m] largest difference between proxies
-  std::uint64_t most_proxy_tick = 0;  ///< the tick in which that is; 0 if no proxy differs
+  std::uint64_t most_proxy_tick = 0;  ///< the tick of that difference; 0 if no proxy differs
   std::uint64_t regions = 0;          ///< ticks that end in different regions
   std::uint64_t contacts = 0;         ///< ticks in which only one of the two touches
   std::optional<std::uint64_t> gap;  ///< a tick missing from the record: the replay ended before it

@@ -111,7 +111,7 @@ struct SessionState {
   std::optional<VirtualCoupling> coupling;       ///< no value: the session has no coupling
   std::optional<PassivityController> passivity;  ///< no value: the session controls no energy
   double source_work = 0.0;       ///< [J] sourceWork() of the renderer, up to the last tick
-  std::uint64_t ticks = 0;        ///< number that were made
+  std::uint64_t ticks = 0;        ///< number of ticks made
   std::uint64_t next_change = 0;  ///< index of the first of SessionSettings::changes not yet due
   double last_time = 0.0;         ///< [s]
   bool has_begun = false;         ///< a tick was made, so that `last_time` counts

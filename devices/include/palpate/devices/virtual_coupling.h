@@ -48,8 +48,8 @@ class PALPATE_EXPORT VirtualCoupling {
   /// @throws Error (kUsage, coupling.*) for a value out of its range.
   explicit VirtualCoupling(const CouplingSettings& settings);
 
-  /// The hand is at `hand` [m], `dt` [s] after the last time (if 0 or less: as long as the time
-  /// before). Returns where the scene is to be evaluated.
+  /// The hand is at `hand` [m], `dt` [s] after the last time; if `dt` is not above 0, the one
+  /// before is used again. Returns where the scene is to be evaluated.
   [[nodiscard]] ToolMotion reach(const Vec3& hand, double dt) noexcept;
   /// [N] The force on the hand, given the scene's answer at the result of reach(). It never pulls
   /// into the wall, against `answer.normal`.

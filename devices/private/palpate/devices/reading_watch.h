@@ -37,7 +37,7 @@ class ReadingWatch {
 
   /// True if no new reading came for too long: zero force must be written.
   [[nodiscard]] bool hasExpired() const noexcept { return has_expired_; }
-  /// Grows from 0, when readings came again, to 1.
+  /// 1; but when readings have come again, or after restart(), it grows from 0 to 1.
   [[nodiscard]] double share() const noexcept {
     if (!is_recovering_) return 1.0;
     return static_cast<double>(now_ - recovered_from_) / static_cast<double>(recovery_);

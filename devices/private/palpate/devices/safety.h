@@ -26,8 +26,8 @@ struct SafeForce {
 };
 
 /// A value type without a clock of its own; real-time safe. In each turn of a loop call read(),
-/// ask() and wrote(). Times are in [ns] of one clock and never go back; if one does, it counts as
-/// no time.
+/// ask() and wrote(). Times are in [ns] of one clock and never go back; if one does, no time counts
+/// as passed.
 class Safety {
  public:
   /// `max_force` [N] as in DeviceInfo. `watchdog` [ns]: silence after which the force is zero,

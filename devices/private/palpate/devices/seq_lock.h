@@ -24,7 +24,7 @@ class SeqLock {
     std::memcpy(words.data(), &value, sizeof(Value));
     const std::uint64_t turn = turn_.load(std::memory_order_relaxed);
     turn_.store(turn + 1, std::memory_order_relaxed);
-    // A reader that sees a new word also sees the odd turn.
+    // A reader that sees one of the new words sees a changed turn as well, and tries again.
     for (std::size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
     turn_.store(turn + 2, std::memory_order_release);
   }
