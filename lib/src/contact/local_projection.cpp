@@ -14,8 +14,8 @@ constexpr double kLargestTurn = 0.5;  // [rad]
 /// Relative to the way to the target and to the coordinates: a step this short means convergence.
 constexpr double kSettled = 1e-12;
 constexpr double kRounding = 1e-14;
-/// Relative to the way: where steps no longer get shorter, one this short is the last. A wall whose
-/// shape is given about a far place has larger rounding errors than the coordinates.
+/// Relative to the way: if steps no longer get shorter, a step this short means convergence. A wall
+/// whose shape is given about a far place has larger rounding errors than the coordinates.
 constexpr double kSettledAtLast = 1e-8;
 
 }  // namespace

@@ -132,8 +132,8 @@ std::span<const NearCell> NearCells::find(RegionId region, const Signs& signs,
     evaluate(partition_.layerSides(other, false), signs, near, other_);
     keep(other_);
   }
-  // The way past a sheet leads beside it: on that side of its solid where the point is, or beyond
-  // its edge.
+  // Near a sheet the point may go where it does not cross the sheet: on its own side of the sheet's
+  // solid, or beyond the sheet's edge.
   for (const Sheet& sheet : passages_.sheets()) {
     const bool is_near = std::any_of(sheet.leaves.begin(), sheet.leaves.end(),
                                      [&](LeafId leaf) { return index_[leaf] >= 0; });

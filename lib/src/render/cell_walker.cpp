@@ -58,7 +58,7 @@ void CellWalker::standWith(const CellWalker& other) noexcept {
 }
 
 void CellWalker::resume() noexcept {
-  // Advance the counter so far that no leaf's jet counts as asked for a slide ago.
+  // Advance the counter so far that no leaf's jet counts as asked for during the last slide.
   stay_ += limits::kStaysOfSlide + 1;
   ++state_;
   travel_ = 0.0;
@@ -280,7 +280,7 @@ CellWalker::Slid CellWalker::slideTo(const Vec3& target, const NearCell& cell,
     const double before = std::max(0.0, side(leaf) * valueHere(leaf));
     const double after = side(leaf) * leaves_[leaf].field->value(target);
     if (opens_[leaf] && !held.empty()) {
-      // An opening may be narrower than the way is long.
+      // An opening may be narrower than the way is long, so the ends of the way do not show it.
       const int budget = std::min(limits::kEvaluationsPerSweep, evaluations_left_);
       const SweepResult swept =
           sweepLeaf(leaf, surfaceOf(leaf), here_.point, target, before, budget);

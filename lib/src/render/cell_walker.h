@@ -161,7 +161,7 @@ class CellWalker {
   double measure(LeafId leaf) noexcept;
   /// S of the leaf at the point, computed once as long as the point stays there.
   double valueHere(LeafId leaf) noexcept {
-    // A leaf whose jet was asked for a slide ago will be asked for it again: compute the whole jet.
+    // If the jet was needed during the last slide, it will be needed again: compute all of it.
     if (stay_ - jets_[leaf].stay <= limits::kStaysOfSlide) return jetHere(leaf).value;
     Measured& known = measured_[leaf];
     if (known.stay != stay_) known = {leaves_[leaf].field->value(here_.point), stay_};

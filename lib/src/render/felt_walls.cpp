@@ -14,8 +14,8 @@ namespace {
 /// time.
 constexpr double kFarthestMeeting = 30.0;
 constexpr int kMeetingSteps = 12;
-/// A place counts as common to two walls if its distances from them add up to at most kMet of that
-/// farthest distance. kFlattest is the smallest squared sine of the angle between them.
+/// A place counts as common to two walls if its distances from them add up to at most kMet times
+/// that farthest distance. kFlattest is the smallest squared sine of the angle between them.
 constexpr double kMet = 1e-6;
 constexpr double kFlattest = 1e-3;
 /// Relative to the way to a wall and to the coordinates: rounding.

@@ -45,7 +45,7 @@ class PaperRenderer final : public RendererBase {
   struct Layer {
     PaperWall wall;
     PaperSurface surface;  ///< of its walls, from outside
-    double beneath = 0.0;  ///< [m] this far below the contact point is the region behind it
+    double beneath = 0.0;  ///< [m] how far below the contact point to look up the region
   };
 
   void start(const HipState& hip) noexcept;

@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-/// Counts leaves.
+/// Counts the leaves that it is called with, and keeps the last two.
 struct Found {
   LeafId last = 0;
   LeafId before = 0;

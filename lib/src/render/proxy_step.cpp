@@ -212,8 +212,7 @@ Vec3 ProxySolver::limited(const CellProblem& problem, const Vec3& step,
     // A step shorter than the distance to a wall cannot land on its other side.
     const double safe = std::fabs(wall.distance) * std::min(1.0, wall.slope / leaf.lipschitz);
     if (!leaf.is_flat) {
-      // A longer step is examined in as many strides as there are, if the wall turns little over
-      // it.
+      // A longer step is possible in up to kMostStrides strides, if the wall turns little over it.
       const double turned = limits::kLargestTurn / std::max(wall.bend_size, 1.0 / ball);
       const double seen = std::min(turned, limits::kMostStrides * limits::kStride * leaf.feature);
       most = std::min(most, std::max({limits::kShareOfFeature * leaf.feature, safe, seen}));

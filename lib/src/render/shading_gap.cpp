@@ -37,7 +37,7 @@ int shadedMaterial(const Scene& scene, RegionId region) {
   return out;
 }
 
-/// [m] Up to which distance from its surface at `p` the field answers on both sides; at most
+/// [m] The distance from its surface at `p` up to which the field answers on both sides; at most
 /// `needed`.
 double knownAt(const Field& field, const Vec3& p, double needed) {
   const Vec3 n = unitOr(field.sample(p).gradient, Vec3(0.0));

@@ -107,8 +107,8 @@ class LabelShare final : public Field {
     const FieldSample own = own_->sample(p);
     FieldSample out = own;
     for (const FieldPtr& other : others_) {
-      // Away from the other label that label's field is positive, and half the difference is below
-      // own.value.
+      // If the other label's field is at least -own.value, half the difference is at most own.value
+      // and cannot be the maximum.
       if (other->value(p) >= -own.value) continue;
       const FieldSample theirs = other->sample(p);
       const double half = 0.5 * (own.value - theirs.value);

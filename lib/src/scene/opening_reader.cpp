@@ -63,7 +63,7 @@ void RegionReader::requireOpeningForce(const MapReader& reader, std::string_view
       "give it the force: opens_at: 2 N");
 }
 
-/// Reads the force that opens it, and what is left behind.
+/// Reads `hole`, `rate` and `rearm`, which only a port that opens by force may have.
 void RegionReader::readPuncture(const MapReader& reader, PortDescription& port) {
   for (const char* key : {"hole", "rate", "rearm"}) {
     if (reader.has(key)) requireOpeningForce(reader, key, port);

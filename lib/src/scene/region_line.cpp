@@ -61,7 +61,7 @@ void RegionLine::find(bool between, std::vector<Candidate>& found) const {
     if (!part) return;
     candidate.leaf = static_cast<LeafId>(item);
     candidate.field = leaf.field.get();
-    // Nothing lies before the line's begin or behind its end.
+    // No point lies before the line's beginning or behind its end, so no limit is needed there.
     candidate.enters = part->first > 0.0 ? part->first * length_ : -kInfinity;
     candidate.leaves = part->second < 1.0 ? part->second * length_ : kInfinity;
     const Box3 domain = leaf.field->lipschitzDomain();
@@ -119,7 +119,7 @@ void RegionLine::look(Candidate& candidate, const Vec3& p, double place) {
 void RegionLine::ask(Candidate& candidate, const Vec3& p, double place) const {
   const double value = candidate.field->value(p);
   candidate.inside = value < 0.0 && candidate.bounds.contains(p);
-  // Nothing is fixed where the value is not a number.
+  // If the value is not a number, the sign is not known to be the same anywhere else.
   const double fixed = std::fabs(value) * candidate.per_slope - kRounding * length_;
   candidate.fixed_from = fixed > 0.0 ? place - fixed : kInfinity;
   candidate.fixed_to = fixed > 0.0 ? place + fixed : -kInfinity;

@@ -17,8 +17,8 @@ namespace palpate {
 /// `text` in single quotes, on one line and cut off if it is too long.
 [[nodiscard]] PALPATE_EXPORT std::string inQuotes(std::string_view text);
 
-/// "a, b, c": `shown` of each item, which is a function or a member. Items for which that is empty
-/// are left out.
+/// "a, b, c": what `shown`, a function or a member, gives for each item. Items for which that is
+/// empty are left out.
 template <typename Items, typename Shown = std::identity>
 [[nodiscard]] std::string joined(const Items& items, std::string_view between = ", ",
                                  Shown shown = {}) {

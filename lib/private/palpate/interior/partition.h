@@ -129,8 +129,8 @@ class Partition {
   [[nodiscard]] std::span<const Leaf> leaves() const noexcept { return leaves_; }
   [[nodiscard]] std::size_t regionCount() const noexcept { return layer_count_ + 1; }
 
-  /// The leaves into which `part`, a field met while a layer was split, was split; empty if it was
-  /// not met. This is how `on: brim` finds its facet.
+  /// The leaves into which the constructor split `part`, a field that occurs in a layer's field;
+  /// empty if it occurs in none. This is how `on: brim` finds its facet.
   [[nodiscard]] std::vector<LeafId> leavesOf(const Field* part) const;
 
   /// Leaves of the expression of `region`'s layer, without repetition.
