@@ -79,8 +79,8 @@ double growthInARun(const LoopModel& loop, const WallModel& wall) {
   const int ticks = static_cast<int>(std::clamp(tenfold, 1000.0, longest));
   const int before = loop.hand ? static_cast<int>(std::lround(1.0 / loop.period)) : 0;
   const double end = (before + ticks - 0.5) * loop.period;
-  // It starts 1 % off the rest position: contact is not lost while that grows by less than 100
-  // times.
+  // The device starts 1 % off the rest position: contact is not lost while this offset grows by
+  // less than 100 times.
   Path path = {{0.0, Vec3(0.0, 0.0, -0.99 * kDepth)}, {end, Vec3(0.0, 0.0, -kDepth)}};
   if (loop.hand) {
     path = pressPath(loop, wall, before * loop.period, end);

@@ -114,7 +114,7 @@ TEST(Clutch, AHandThatIsHeldForLongLetsGoOfNothingAndTakesHoldOfTheSame) {
   EXPECT_LT(glm::length(let_go.force - tick.force), 1e-12);
   for (int n = 0; n < 200; ++n) tick = hand.to(device, false);
   EXPECT_LT(glm::length(tick.force - before.force), 1e-9);
-  // And from there it moves by the scale.
+  // From there the probe moves by the hand's displacement times the scale.
   tick = hand.to(device + Vec3(0.0, 0.0, 1e-4), false);
   EXPECT_LT(glm::length(tick.hip.position - before.hip.position - Vec3(0.0, 0.0, 2e-4)), 1e-15);
 }

@@ -82,7 +82,7 @@ TEST(ContentLoops, ALatticeAtTheHandsResonanceSwingsAsItsClosedFormDoes) {
   constexpr double kWave = 5e-3;  // [m]
   for (const std::string& device : fourDevices()) {
     const devices::LoopModel loop = loopOf(device);
-    // Its steepest slope, 2 pi f / w, is 0.8 of the budget of a wall.
+    // The lattice's steepest slope, 2 pi f / w, is 0.8 of the budget of a wall.
     const double slope = 0.8 * devices::budgetOf(loop).stiffness();
     const double force = std::min(1.0, slope * kWave / (2.0 * std::numbers::pi));
     const ScenePtr scene = sceneOf(

@@ -10,7 +10,7 @@
 
 namespace palpate::devices {
 
-/// It runs in the device's own time.
+/// The driver runs in the emulated device's time.
 struct Rig {
   FalconEmulator emulator;
   UsbfsEmulation usb{emulator};

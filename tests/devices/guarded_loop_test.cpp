@@ -146,7 +146,7 @@ TEST(GuardedLoop, ACouplingHoldsTenTimesTheBudget) {
             coupled.stiffness / wall, feltStiffness(wall, coupling) / wall);
         for (const Felt* felt : {&coupled, &both}) {
           EXPECT_EQ(felt->violations, 0) << what;
-          // Less than one tick's own cost: no energy at all.
+          // With a coupling the hand gets no energy, not even the cost of one tick.
           EXPECT_LE(felt->to_hand, 1e-9) << what;
           EXPECT_LE(felt->beyond, 1e-9) << what;
           // Friction holds the device still. Without friction, a coupling below the limit rings

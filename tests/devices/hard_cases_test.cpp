@@ -49,7 +49,7 @@ class FrictionWall final : public rivals::RivalRenderer {
       return untouched(hip);
     }
     const Vec3 above(hip.position.x, hip.position.y, 0.0);
-    // It begins where the hand passed through the wall.
+    // The proxy begins where the hand passed through the wall.
     if (!std::exchange(is_held_, true)) {
       proxy_ = before + before.z / (before.z + depth) * (hip.position - before);
     }

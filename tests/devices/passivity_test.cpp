@@ -240,8 +240,8 @@ TEST(PassivityController, ItHoldsTenTimesTheBudget) {
 }
 
 TEST(PassivityController, WithADelayItNeedsTheLimitOfItsDamping) {
-  // Relative to the stiffness it holds: the budget with d ticks is 1 / (1 + 2 d) of that without
-  // delay.
+  // The wall is twice as stiff as the budget, which with d ticks of delay is 1 / (1 + 2 d) of that
+  // without delay.
   for (int delay = 1; delay <= 2; ++delay) {
     PassivitySettings how = settings();
     how.delay = delay;
@@ -305,8 +305,8 @@ TEST(PassivityController, TheBoundGivesNothingBeforeItIsThere) {
 }
 
 TEST(PassivityController, WhatItsDamperCannotHoldIsSoftened) {
-  // It is below the exact limit of the sampled loop with the largest damping, when nobody holds the
-  // device.
+  // mostStiffness() is below the exact limit of the sampled loop with the largest damping, when
+  // nobody holds the device.
   for (int delay = 0; delay <= 8; ++delay) {
     PassivitySettings how = settings();
     how.delay = delay;

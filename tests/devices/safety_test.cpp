@@ -363,7 +363,7 @@ TEST(Safety, KeepsItsPromisesWhateverHappens) {
         ASSERT_EQ(force, Vec3(0.0)) << nameOf(safety.state());
       }
       ASSERT_EQ(length > 0.0 && !permitsForce(safety.state()), false);
-      // It grows no faster than permitted: at most 1 ms counts.
+      // The force grows no faster than permitted: of a tick at most 1 ms counts.
       ASSERT_LE(growth(p.last, force), p.limits.max_growth * 1e-3 + 1e-9);
       // The motors' heat follows from the forces that were held, and hot motors get only the
       // continuous force.

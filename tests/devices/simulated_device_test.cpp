@@ -338,7 +338,8 @@ TEST(SimulatedDevice, EnergyBalances) {
 }
 
 // A hand that presses slowly holds a device where friction and force are equal except for rounding.
-// There each search for an event found what the next one did not, and reading went on for hours.
+// There each search for an event used to find one that the next search did not find, and reading
+// went on for hours.
 TEST(SimulatedDevice, WhereFrictionAndForceAreEqualButForRoundingItGoesOn) {
   std::mt19937 random(11);
   const auto any = [&](double lo, double hi) {
@@ -381,7 +382,7 @@ TEST(SimulatedDevice, AHandBringsItWhereItIsToldToBe) {
   run(device, 2900, [](int) { return Vec3(0.0); });
   EXPECT_LT(glm::length(device.position() - goal), 1e-9);
   EXPECT_LT(glm::length(device.handPosition() - goal), 1e-9);
-  // It gave no more energy than it had: the energy it lost came from the hand.
+  // The device gave the hand no energy: the energy that it lost came from the hand.
   EXPECT_LT(device.work().given(), 0.0);
 }
 

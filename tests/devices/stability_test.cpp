@@ -123,7 +123,7 @@ TEST(Stability, PresetsHaveTheLimitsThatSimulationsFound) {
     }
     loop.delay = 0;
     loop.period = 2.5e-4;
-    // It is proportional to the rate to 0.1 %, except for the rounding of the numbers above.
+    // The limit is proportional to the rate to 0.1 %, except for the rounding of the numbers above.
     const double faster = 4.0 * each.by_delay[0];
     EXPECT_NEAR(largestStiffness(loop), faster, 2.1 + 1e-3 * faster) << each.name;
     loop.period = 1e-3;

@@ -185,15 +185,15 @@ TEST_P(BakeImplicit, DoesNotDependOnThreads) {
 }
 
 TEST_P(BakeImplicit, LipschitzBoundIsThatOfADistance) {
-  // It was 9 to 19 when S / |grad S| replaced the distance far from the surface.
+  // The bound was 9 to 19 when S / |grad S| stood for the distance far from the surface.
   const Shape& shape = GetParam();
   for (const double voxel : {2 * kMm, 1 * kMm, 0.5 * kMm}) {
     const FieldPtr made = gridField(bake(*shape.field, optionsOf(shape, voxel)));
     std::printf("%s at %.1f mm: slopes up to %.3f\n", shape.name.c_str(), voxel / kMm,
                 made->lipschitz());
-    // It is 1 except where distances to several sides meet, which the spline rounds off: there the
-    // control values of its cells have a bound of 2.6, at a crease along the diagonal and at the
-    // tip of a cone.
+    // Slopes are 1 except where distances to several sides meet, which the spline rounds off. There
+    // the bound from the control values of its cells is 2.6: at a crease along the diagonal and at
+    // the tip of a cone.
     EXPECT_LE(made->lipschitz(), 3.0);
   }
 }

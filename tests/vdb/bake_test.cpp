@@ -213,7 +213,8 @@ TEST(BakeField, OtherLengthUnitsHoldTheSameShape) {
   }
 }
 
-// A grid baked again, finer and wider than before: where it knew only a bound, no voxel is active.
+// A grid baked again, finer and wider: where the first grid knows only a bound of the distance, the
+// second has no active voxel.
 TEST(BakeField, GridBakedAgainKeepsToWhatItKnew) {
   const LevelSet coarse = bake(*sphere(Vec3(0.0), 8e-3), voxels(0.5e-3, 4.0));
   const FieldPtr known = gridField(coarse);

@@ -31,7 +31,7 @@ std::vector<int> mine() {
 
 /// Number of pieces of work, divided as in a bake.
 constexpr int kPieces = 2000;
-/// How many of them ran on a thread that may use `processor`.
+/// How many of the pieces ran on a thread that may use `processor`.
 int piecesOn(int processor) {
   std::atomic<int> count{0};
   tbb::parallel_for(tbb::blocked_range<int>(0, kPieces, 1),

@@ -93,7 +93,7 @@ TEST(Bricks, NoWayIsSteeperThanTheLipschitzBound) {
                                 of("ball of 100 voxels", sphere(Vec3(0.1e-3), 50e-3), 1.02),
                                 of("torus, tube of 8 voxels", torus(12e-3, 4e-3), 1.15),
                                 of("box", box(Vec3(0.0), Vec3(12e-3, 9.3e-3, 8.1e-3)), 2.5),
-                                // Nowhere as steep as its coefficients would allow.
+                                // Noise is nowhere as steep as its coefficients would allow.
                                 {"noise", noiseGrid({Coord(0)}, 14), {-half, half}, 20.0}};
   for (const Case& each : cases) {
     for (const Sampler sampler : {Sampler::kCubic, Sampler::kTrilinear, Sampler::kAccessor}) {

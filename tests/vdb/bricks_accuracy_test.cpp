@@ -151,8 +151,8 @@ FieldPtr distanceTo(const FieldPtr& function, const Box3& bounds) {
     return FieldSample{distance, normal, true};
   };
   FunctionField::Claims claims{bounds};
-  // Where it finds a point that is not the closest, the value jumps and is too large. A bake drops
-  // voxels beyond this bound, so that it is generous.
+  // Where Newton's method finds a point that is not the closest, the value jumps and is too large.
+  // A bake drops voxels that this bound puts outside the band, so that the bound is generous.
   claims.lipschitz = 16.0;
   return std::make_shared<FunctionField>(sample, claims);
 }

@@ -123,7 +123,7 @@ TEST(Bricks, ATableOfTwoLevelsFindsTheSame) {
     const Vec3 half(9.0);
     expectIsSpline(field, (i % 2 == 0 ? Vec3(0.0) : far) + random.in({-half, half}));
   }
-  // Between the two cubes there are no voxels; it is outside.
+  // Between the two cubes there are no voxels: such a place is outside.
   const FieldSample between = field.sample(0.5 * far * kVoxel);
   EXPECT_FALSE(between.in_band);
   EXPECT_GT(between.value, 5.0 * kVoxel);

@@ -110,7 +110,7 @@ TEST(Certificate, ContentHashesTellPlaceUnitAndSide) {
   EXPECT_NE(contentHash(makeLevelSet(turned, "mm")), contentHash(grid));
 }
 
-/// The fate of a grid from elsewhere: according to `check`, and in a scene that touches it.
+/// What becomes of another tool's grid: by `check`, or in a scene that touches it.
 struct Verdict {
   bool is_yes = false;
   std::string code;  ///< reason of the refusal

@@ -136,8 +136,8 @@ TEST(Dicom, AReportBesideTheSlicesIsPassedOverAndASliceWithoutPixelsIsNot) {
   EXPECT_EQ(errorOf([&] { (void)readImage(path); }).problem().code, "dicom.truncated");
 }
 
-/// What a test knows of a series with slices anywhere: a field that is linear in the world, in
-/// steps of 1/1000, at each voxel's center.
+/// Writes a series whose slices lie anywhere, and knows its values: at each voxel's center that of
+/// a field that is linear in the world, rounded to 1/1000.
 class LooseSeries {
  public:
   static constexpr int kColumns = 6;
@@ -183,7 +183,7 @@ class LooseSeries {
   }
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// At a place in the file's own system [mm].
+  /// The field at a place in the file's own coordinates [mm].
   [[nodiscard]] double value(const Vec3& at) const { return glm::dot(slope_, at); }
   [[nodiscard]] const std::vector<Vec3>& places() const { return places_; }
 

@@ -181,7 +181,8 @@ TEST(MeshFiles, AreTheMeshAndTheBuffersThatItNames) {
   EXPECT_EQ(files("a.glb", head + json + R"({"buffers":[{"uri":"other.bin"}]})"),
             (Names{"a.glb", "a.bin"}));
   EXPECT_EQ(files("b.glb", "glTF"), (Names{"b.glb"}));
-  // What cannot be found is not known; what is cut short is not followed beyond its end.
+  // If one file cannot be found, the list is empty; text that is cut short is not read beyond its
+  // end.
   EXPECT_EQ(files("d.gltf", R"({"buffers":[{"uri":"gone.bin"}]})"), Names{});
   EXPECT_EQ(files("e.gltf", R"({"buffers":[{"uri":"https://host/a.bin"}]})"), Names{});
   EXPECT_EQ(files("f.gltf", R"({"buffers":[{"uri":"a.bin\)"), Names{});

@@ -70,7 +70,8 @@ TEST(LabelsOfMeshes, ABoxOnTheVoxelsHasThemByHalfOpenFaces) {
   for (const bool is_turned : {false, true}) {
     const Mesh box = boxMesh(Vec3(-3e-3, 1e-3, 2e-3), Vec3(5e-3, 7e-3, 4e-3), is_turned);
     const Image image = labelsOfMeshes({{"box", box}}, 1e-3, {});
-    // 8 x 6 x 2 mm: as many voxels, whichever of two opposite faces has those that lie on both.
+    // 8 x 6 x 2 mm in voxels of 1 mm. Voxel centers lie on all faces; of two opposite faces only
+    // one has its voxels inside.
     EXPECT_EQ(count(image, 1.0F), 8U * 6U * 2U);
     EXPECT_EQ(image.labels.names.at(1), "box");
     // Two free voxels on every side.
@@ -83,7 +84,7 @@ TEST(LabelsOfMeshes, ABallsVoxelsAreThoseNearerToItsMiddleThanItsRadius) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(-2e-3, 2e-3);
   for (int round = 0; round < 6; ++round) {
-    // The first on voxel centers, so that poles and a meridian lie on rows.
+    // The first ball is centered on a voxel, so that poles and a meridian lie on rows of voxels.
     const Vec3 center = round == 0 ? Vec3(0.0) : Vec3(any(random), any(random), any(random));
     constexpr double kRadius = 10e-3;
     constexpr int kRings = 64;

@@ -222,8 +222,8 @@ TEST(Polyhedron, WhatIsNoneIsLeftToTheGrid) {
   EXPECT_FALSE(polyhedronField(star(), 11));  // the star has twelve faces
 }
 
-/// From face to face, and from time to time out: all ticks are compared with the oracle, which
-/// projects onto the true solid.
+/// A hand goes from face to face, and now and then out. All ticks are compared with the oracle,
+/// which projects onto the true solid.
 void feelsTrue(const Mesh& mesh, bool from_within, const Vec3& free, double reach, int seed) {
   const FieldPtr field = polyhedronField(mesh);
   ASSERT_TRUE(field);

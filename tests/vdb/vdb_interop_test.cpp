@@ -329,8 +329,8 @@ TEST(VdbForOthers, VdbRenderSeesTheSurface) {
   picture.get();
   const std::string pixels((std::istreambuf_iterator<char>(picture)), {});
   ASSERT_EQ(pixels.size(), std::size_t{3} * 64 * 64);
-  // The ball in front of the corner's background: 37 mm away at 45 degrees, some 40 % of the
-  // height.
+  // Pixels that differ from the corner's background show the ball: 37 mm away, with a view angle of
+  // 45 degrees, it takes some 40 % of the height.
   int other = 0;
   for (std::size_t p = 0; p < pixels.size(); p += 3) {
     other += pixels.compare(p, 3, pixels, 0, 3) != 0 ? 1 : 0;

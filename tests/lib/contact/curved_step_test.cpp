@@ -177,8 +177,8 @@ TEST(CurvedStep, BetweenTwoWallsGoesAlongTheirCrease) {
     const Vec3 t = glm::normalize(glm::cross(a, b));
     const double eigenvalue = 1.0 - glm::dot(t, bend * t);
     EXPECT_NEAR(step.lowest, eigenvalue, 1e-12);
-    // From the point on the crease nearest to the wish as far as the curvature demands, or up to
-    // the first plane.
+    // The best step starts at the point `base` of the crease, and goes along the crease as far as
+    // the curvature demands, or up to the first plane.
     const Vec3 base = first.step - glm::dot(t, first.step) * t;
     double lo = -kInfinity;
     double hi = kInfinity;

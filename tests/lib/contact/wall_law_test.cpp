@@ -80,8 +80,8 @@ TEST(SoftWall, GivesWayByWhatTheStopDoesNot) {
         // The two springs in series have the same force, and the whole depth is the sum of their
         // compressions.
         EXPECT_NEAR(soft.depth - soft.force / stop, give, 1e-9 * give + 1e-15) << stop;
-        // Where it is less stiff than the stop allows, it is the law itself; from there on a
-        // straight line with the largest slope.
+        // Where the law is less stiff than the stop allows, the soft wall follows the law; from
+        // there on it is a straight line with the largest slope.
         if (law.tangent(soft.depth) < 0.98 * stop) {
           EXPECT_LE(soft.force, law.force(soft.depth) * (1.0 + 1e-9));
         }

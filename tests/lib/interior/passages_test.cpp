@@ -304,7 +304,7 @@ TEST_F(Facets, AnOpeningForceThatVariesSaysSo) {
   skin.opens_at = testing::linearMap(3.0, Vec3(0, 0, 10.0), {1.0, 5.0});
   EXPECT_TRUE(look(outside_, {0}, {skin}).varies);
   EXPECT_DOUBLE_EQ(look(outside_ + Vec3(0, 0, 0.1), {0}, {skin}).opens_at, 4.0);
-  // This holds whatever other ports lead through there.
+  // The force varies whatever other ports lead through the facet.
   Port hard = port({0}, {1});
   hard.opens_at = 5.0;
   EXPECT_TRUE(look(outside_, {0}, {skin, hard}).varies);

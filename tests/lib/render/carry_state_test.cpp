@@ -164,7 +164,7 @@ TEST(CarriedState, IntoTheSameSceneEveryExampleGoesOn) {
       const TickResult now = other->update({p, Vec3(0.0)});
       const TickResult then = same->update({p, Vec3(0.0)});
       ASSERT_EQ(now.region, then.region) << ticks;
-      // Carried states go on except for rounding.
+      // A carried state goes on as the original does, except for rounding.
       ASSERT_TRUE(isNear(now.proxy, then.proxy, 1e-12)) << ticks;
     }
   }
@@ -180,7 +180,7 @@ void expectTheSameOnTheWay(HapticRenderer& one, HapticRenderer& other, const Vec
     const TickResult now = one.update({p, velocity});
     const TickResult then = other.update({p, velocity});
     ASSERT_EQ(now.region, then.region) << i;
-    // Carried states go on except for rounding.
+    // A carried state goes on as the original does, except for rounding.
     ASSERT_TRUE(isNear(now.force, then.force, 1e-9)) << i;
   }
 }

@@ -105,7 +105,7 @@ TEST(Contrasts, AreToldWithWhatRemains) {
   ASSERT_EQ(sharp.size(), 1U);
   EXPECT_EQ(sharp[0].material, 0);
   EXPECT_NEAR(sharp[0].at.x, 0.0, 0.25e-3);
-  // It is steepest where K / K' is smallest, slightly on the soft side of the middle.
+  // The contrast is sharpest where K / K' is smallest, slightly on the soft side of the middle.
   EXPECT_LT(sharp[0].length, 0.2e-3);
   EXPECT_GT(sharp[0].length, 0.05e-3);
   EXPECT_GT(sharp[0].sideways, 0.05);
@@ -159,8 +159,8 @@ TEST(Contrasts, ASharpStepIsFoundBesideALargerGentleOne) {
       contrastsOf(*sceneWith(sphere(Vec3(0.0), kHalf), MaterialMapPtr(map)));
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].at.x, kAt, kWidth);
-  // It must be found in the middle of the step; a secant is nowhere steeper, and over half of the
-  // step at least half as steep.
+  // The contrast must be found in the middle of the step; a secant is nowhere steeper, and over
+  // half of the step at least half as steep.
   const double steepest = kGentle + 0.1 * 1.5 / kWidth;
   EXPECT_GE(found[0].length, (1.0 - 1e-6) / steepest);
   EXPECT_LE(found[0].length, 2.0 / steepest);

@@ -22,8 +22,8 @@ RendererState damaged(const RendererState& state, std::mt19937& random) {
   std::memcpy(bytes.data(), &state, sizeof state);
   const unsigned count = 1 + random() % 4;
   for (unsigned i = 0; i < count; ++i) {
-    // Most of the numbers that stand for parts of the scene are at the front, and at the end behind
-    // the needle's.
+    // Most of the numbers that stand for parts of the scene are at the front, and at the end,
+    // behind those of the needle.
     const std::size_t at = random() % (random() % 2 == 0 ? 600 : bytes.size());
     unsigned char& byte = bytes[at];
     const unsigned how = random() % 4;

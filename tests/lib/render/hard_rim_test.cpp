@@ -50,7 +50,7 @@ TEST(HardRim, FreeTicksChangeRegionOnlyThroughTheMouth) {
     }
     if (out.region != before.region) {
       ASSERT_GT(out.event_count, 0) << i;
-      // It passed through the plane of the brim, inside the rim or above it.
+      // The proxy passed through the plane of the brim, inside the rim or above it.
       ASSERT_TRUE(glm::length(out.proxy) < kRadius + 1e-9 || out.region == kOutside) << i;
     }
     if (out.region != kOutside) {

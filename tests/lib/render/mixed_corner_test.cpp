@@ -41,7 +41,7 @@ TEST(MixedCorner, AWallThatStiffensDoesSoAsDeepAsItIsPressed) {
   for (const double depth : {0.5e-3, 2e-3, 5e-3}) {
     const Vec3 force = forceAt(text, Vec3(-1e-3, 0.0, -depth));
     const double expected = 500.0 * depth + 2e5 * depth * depth;
-    // The proxy counts as on a wall within a billionth of its size.
+    // The proxy counts as on a wall within a billionth of the wall's feature size.
     EXPECT_NEAR(force.z, expected, 1e-6 * expected) << depth;
     EXPECT_NEAR(force.x, 0.4, 1e-6) << depth;
   }
@@ -69,7 +69,7 @@ TEST(MixedCorner, EachOfThreeIsItselfWhereTheProxyCameAlongOneInATick) {
     (void)hand.walk(start);
     const TickResult out = hand.to(mm(-1, -1, -1));
     ASSERT_TRUE(out.settled);
-    // The proxy counts as on a wall within a billionth of its size.
+    // The proxy counts as on a wall within a billionth of the wall's feature size.
     EXPECT_TRUE(isNear(out.force, Vec3(0.5, 0.5, 3.0), 1e-6));
   }
 }

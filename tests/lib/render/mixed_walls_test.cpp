@@ -364,8 +364,8 @@ TEST(MixedWalls, ATickDependsOnTheStateAlone) {
     ASSERT_TRUE(other->setState(one->state()));
     const TickResult a = one->update({p, Vec3(0.0)});
     const TickResult b = other->update({p, Vec3(0.0)});
-    // A renderer that goes on may differ from one whose state was set by this: rounding of where
-    // the proxy rests.
+    // A renderer that goes on may differ from one whose state was set, by rounding of the place
+    // where the proxy rests.
     ASSERT_TRUE(isNear(a.force, b.force, 1e-6)) << i;
   }
 }

@@ -15,8 +15,8 @@ namespace {
 /// 1e-6 of 2 mm, plus a billionth of two walls' feature sizes.
 constexpr double kClose = 2.5e-9;  // [m]
 
-/// A hand inside a ball of radius `ball` [m], pressed 2 mm into the wall of a bore of 6 mm, moving
-/// around the bore and along it.
+/// A hand inside a ball of radius `ball` [m], pressed up to 2 mm into the wall of a bore of
+/// `radius` [m], moving around the bore and along it.
 void circleOneBore(const FieldPtr& far_part, double ball, double radius, int steps_around) {
   SCOPED_TRACE(::testing::Message() << "bore of radius " << radius << ", " << steps_around);
   const FieldPtr bore = cylinder(Vec3(0.0), Vec3(0, 0, 1), radius, 0.060);
@@ -68,7 +68,7 @@ TEST(PhantomPlanes, OfABoxTwoMetersAway) {
 }
 
 TEST(PhantomPlanes, OfABoxWhoseFacesTouchTheBore) {
-  // Their planes are tangent to the wall of the bore.
+  // The planes of two faces are tangent to the wall of the bore of 3 mm radius.
   circleBore(box(mm(0, 60, 0), mm(6, 5, 5)), 0.1);
 }
 

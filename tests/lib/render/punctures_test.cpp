@@ -193,7 +193,8 @@ TEST(Puncture, ARestEndsFarAwayOrUnderAHandFarBeyondTheWall) {
   Drive drive(sceneOf(skin("opens_at: 0.1 N, back: 0.1 N, rearm: 0.5 mm")));
   (void)drive.to(mm(0, 0, 1));
   ASSERT_TRUE(pressTo(drive, mm(0, 0, -0.3)));
-  // It was never 0.5 mm inside, so the port rests until the hand is that far beyond the wall.
+  // The proxy was never 0.5 mm inside, so the port rests until the hand is that far beyond the
+  // wall.
   auto crossing = pressTo(drive, mm(0, 0, 2));
   ASSERT_TRUE(crossing);
   EXPECT_NEAR(crossing->force, 0.5, 0.011);

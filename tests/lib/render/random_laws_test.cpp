@@ -236,7 +236,7 @@ TEST(RandomParts, TurnedMirroredScaledAndMovedTheyFeelTheSame) {
 }
 
 // Two faces of the box lead on equally well when the hand breaks through, 12 mm deep. The order of
-// the faces decided, which differs in the turned scene, and the proxy ended 10 mm apart.
+// the faces used to decide; it differs in the turned scene, and there the proxy ended 10 mm away.
 TEST(RandomParts, TheOrderOfABoxsFacesChoosesNoWay) {
   Numbers scene(1);
   scene.first = 94;

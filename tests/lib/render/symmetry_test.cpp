@@ -113,8 +113,8 @@ Difference compare(const Elsewhere& other) {
         out.worst = std::max(out.worst, off / boundOf(on_surface, other, depth, 1.0));
         continue;
       }
-      // Either it is deep in a wedge, or rounding chose one of several ends: in that case both go
-      // on from different places, and the rest of the trace is not compared.
+      // Either the hand is deep in a wedge, or rounding chose one of several ends. Then both
+      // proxies go on from different places, and the rest of the trace is not compared.
       const testing::Rest rest = oracle.solve(trace.ticks[i - 1].proxy, trace.path[i]);
       const double bound = boundOf(on_surface, other, depth, rest.blunt);
       if (off <= bound) continue;

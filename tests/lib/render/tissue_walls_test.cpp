@@ -99,7 +99,8 @@ TEST(TissueWalls, AMaxwellBranchSlackensRatherThanPull) {
   // Relaxed: its dashpot has given way by the whole depth.
   EXPECT_NEAR(press(2e-3, 1e6), kOwn * 2e-3, 1e-9);
   EXPECT_NEAR(press(0.1e-3, 1e-6), 0.0, 1e-9);
-  // From the state where both were in balance, kBranch x -0.025 mm, by 0.9 mm.
+  // There the branch, stretched by -0.025 mm, was in balance with the wall's spring, both at 0.05
+  // N. The hand then presses by 0.9 mm more.
   EXPECT_NEAR(press(1e-3, 1e-6), kOwn * 1e-3 + kBranch * (0.9e-3 - kOwn * 0.1e-3 / kBranch), 1e-6);
 }
 
@@ -137,7 +138,7 @@ TEST(TissueWalls, AFrictionRatioIsTheRatioAtEveryRate) {
         highest = std::max(highest, -r.force.x / r.force.z);
       }
       EXPECT_NEAR(-r.force.x / r.force.z, 0.3, 1e-6) << dt << spring;
-      // It breaks away at the static ratio, measured to within a tick's way.
+      // The proxy breaks away at the static ratio, measured to within a tick's way.
       EXPECT_NEAR(highest, 0.5, speed * dt / depth + 1e-6) << dt << spring;
       EXPECT_LE(highest, 0.5 + 1e-6);
     }
@@ -166,7 +167,7 @@ TEST(TissueWalls, TheForceOfAMotionDoesNotDependOnTheTick) {
   for (std::size_t i = 0; i < coarse.size(); ++i) {
     if (glm::distance(coarse[i], fine[i]) > 1e-9) ++differ;
   }
-  // They differ only right after a puncture, whose time is known only to within a tick.
+  // The forces differ only right after a puncture, whose time is known only to within a tick.
   EXPECT_LE(differ, 3);
 }
 

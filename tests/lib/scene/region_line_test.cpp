@@ -1,4 +1,5 @@
-// The regions along lines must be those of the points by themselves, whatever is not asked.
+// RegionLine must find for each point of a line the region that the point has by itself, whichever
+// leaves it does not evaluate.
 
 #include "scene/region_line.h"
 
@@ -21,8 +22,8 @@ RegionId regionAt(const Partition& partition, const Vec3& p) {
   return partition.regionOf(signs);
 }
 
-/// Asks along lines in all directions: at steps forwards, at halves between two of them, and here
-/// and there. Returns how often the region was another one than before.
+/// Asks for regions along lines in all directions: step by step, by bisection, and at random
+/// places. Returns how often the region differed from that of the point before.
 int compare(const Partition& partition, const Box3& around, std::uint64_t seed) {
   Random random(seed);
   RegionLine line(partition);
@@ -97,7 +98,7 @@ TEST(RegionLine, SaysOfManyLayersWhatTheirPointsSay) {
   EXPECT_GT(compare(Partition(layers), kAround, 13), 500);
 }
 
-/// Counts who asks for its value.
+/// Counts how often its value is asked for, and notes whether that was outside its bounds.
 class Counted final : public Field {
  public:
   explicit Counted(FieldPtr of) : of_(std::move(of)) {}
@@ -133,7 +134,8 @@ TEST(RegionLine, AsksALeafOnlyWithinItsBoundsAndAWallOnlyBetweenTwoInsides) {
   for (int i = 0; i <= kSteps; ++i) static_cast<void>(line.at(glm::mix(from, to, i / 400.0)));
   EXPECT_FALSE(left->was_asked_far);
   EXPECT_FALSE(right->was_asked_far);
-  // Each of its own leaf; the wall asks both again, where they overlap: a tenth of the line.
+  // Each ball is asked for its own leaf along less than a third of the line, and again for the wall
+  // between both where they overlap, along a tenth of it.
   EXPECT_GT(left->count, 0);
   EXPECT_LT(left->count, kSteps / 3 + kSteps / 10);
   EXPECT_LT(right->count, kSteps / 3 + kSteps / 10);

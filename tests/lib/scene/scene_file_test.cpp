@@ -32,7 +32,7 @@ ports:
   - {name: mouth, between: [outside, liquid], on: brim}
 )";
 
-// The second.
+// The second scene that the documents show: a scanned head.
 constexpr std::string_view kHead = R"(palpate: 1                       # a scanned head
 length: mm
 images:
