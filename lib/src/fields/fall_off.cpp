@@ -54,8 +54,8 @@ class SteepestSum {
   };
 
   Part within(const Box3& box, const Part& whole) {
-    // So small that the error of leaving out all balls at every halving stays far below a
-    // twentieth.
+    // Balls with a smaller slope go into `rest`. The limit is so low that the error stays far below
+    // a twentieth even if all balls go there at every halving.
     const double least = 1e-5 * whole.bound / static_cast<double>(balls_.size());
     Part part;
     part.box = box;

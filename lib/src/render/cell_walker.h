@@ -34,7 +34,7 @@ class CellWalker {
   void place(const Vec3& p) noexcept;
   /// Puts the point where `other`'s point is, with the same sides.
   void standWith(const CellWalker& other) noexcept;
-  /// To be called after the state was replaced: goes on from there.
+  /// Call this after the state was replaced: the walker goes on from that state.
   void resume() noexcept;
   /// While sealed, everything that leads out of the region is a wall.
   void seal(bool is_sealed) noexcept {

@@ -92,7 +92,7 @@ void LayersBeneath::look(const Vec3& x, const HeldWall& held, RegionId beyond,
     is_behind = is_behind || glm::dot(x - probe_.position(), held.normal) > kAtWall * depth;
     const RegionId from = is_behind ? before : beyond;
     if (!is_behind) {
-      // Of the layers before the wall the last one counts, since it covers the wall.
+      // Only the last of the layers before the wall counts, since it covers the wall.
       found_.count = 1;
       is_behind = region == beyond || isFlush(leaf, x, held, depth);
       if (is_behind || region == front) continue;

@@ -71,9 +71,9 @@ bool ProxySolver::areHeldAlike(const CellProblem& a, const CellProblem& b) noexc
   return true;
 }
 
-/// Of the cells whose solutions are held by the same walls as that of the first cell, the one with
-/// the most room. So the result does not depend on the order of the walls, for example of the faces
-/// of a box, which changes when the scene is rotated.
+/// Returns the cell with the most room among those whose solutions are held by the same walls as
+/// the first cell's solution. So the result does not depend on the order of the walls, for example
+/// of the faces of a box, which changes when the scene is rotated.
 std::size_t ProxySolver::roomiest() const noexcept {
   std::size_t best = 0;
   for (std::size_t i = 1; i < problems_; ++i) {
@@ -349,7 +349,7 @@ bool ProxySolver::go(const CellProblem& problem, const Vec3& y) noexcept {
   return true;
 }
 
-/// At a first-order minimum: looks whether the proxy can come closer by the second order.
+/// Called at a first-order minimum: checks whether the proxy can come closer by the second order.
 bool ProxySolver::kick() noexcept {
   const CellProblem& first = problem_[0];
   const PlaneSolution& s = first.solution;

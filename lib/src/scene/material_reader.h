@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// In the order of the file. @throws Error (kInput) at the offending place.
+/// Returns the materials in the order of the file. @throws Error (kInput) at the offending place.
 [[nodiscard]] std::vector<Material> readMaterials(const SceneLoader& loader, const Node& materials);
 
 }  // namespace palpate

@@ -106,7 +106,7 @@ Survey survey(const Partition& partition, std::span<const Box3> boxes, std::size
       surveyor.walk(from, to);
     }
     for (std::size_t line = 0; line < lines_per_box; ++line) {
-      // From a point of one face to a point of the opposite one.
+      // Each line goes from a point of one face of the box to a point of the opposite face.
       const int axis = static_cast<int>(line % 3);
       Vec3 from(unit(random), unit(random), unit(random));
       Vec3 to(unit(random), unit(random), unit(random));

@@ -33,7 +33,7 @@ Verdict BandSource::judge(const FieldPart& from, const Vec3& center, double radi
     if (wall > reach) return Verdict::kOutside;
     if (wall >= -reach) return Verdict::kKeep;
   }
-  // So far out withWall() raises every value beyond the band.
+  // At this distance from the box withWall() raises every value in the ball beyond the band.
   if (!is_cut_ && !exact_ && boxDistance(center) > (radius + band_) * (1.0 + 1e-9)) {
     return Verdict::kOutside;
   }

@@ -72,7 +72,7 @@ class Search {
   }
 
  private:
-  /// From a point beside the surface: down to the surface, and on through the shape.
+  /// Searches from a point beside the surface down to the surface, and on through the shape.
   void look(const FieldPart& part, const Vec3& p, LostPlaces& lost) const noexcept {
     const FieldSample here = parts_.sample(part, p);
     const double slope = glm::length(here.gradient);

@@ -166,7 +166,8 @@ bool isPlate(const Place& place, const MeshSolid& solid) {
   const Vec3 across = std::fabs(place.in.x) < 0.6 ? Vec3(1.0, 0.0, 0.0) : Vec3(0.0, 1.0, 0.0);
   const Vec3 u = glm::normalize(glm::cross(place.in, across));
   const Vec3 v = glm::cross(place.in, u);
-  // In steps, so that another part beyond a gap is not taken for the same one.
+  // Several places on the way are checked, so that another part beyond a gap is not taken for the
+  // same one.
   constexpr int kSteps = 8;
   for (const Vec3& way : {u, -u, v, -v}) {
     for (int step = 1; step <= kSteps; ++step) {
@@ -176,7 +177,7 @@ bool isPlate(const Place& place, const MeshSolid& solid) {
   return true;
 }
 
-/// Of the places of one leaf: every plate, and at most one wire or crumb.
+/// Returns every plate and at most one wire or crumb among the places of one leaf.
 LostPlaces lostAmong(const std::vector<Place>& places, const MeshSolid& solid,
                      const BakePlan& plan) {
   LostPlaces lost;

@@ -51,8 +51,8 @@ class Walk {
  private:
   static constexpr int kMostLeaves = 6;
 
-  /// For a small triangle, leaf by leaf; terms that depend on one axis only are computed once for
-  /// each row of leaves.
+  /// Lists the leaves of a small triangle one by one; terms that depend on one axis only are
+  /// computed once for each row of leaves.
   void listAll(const Box3& reach) {
     struct Row {
       double gap, away;

@@ -39,7 +39,7 @@ struct GridTally {
   void add(const GridTally& other);
 };
 
-/// In parallel, leaf by leaf; the first of each kind is the first in the tree's order.
+/// Works in parallel, leaf by leaf; the first of each kind is the first in the tree's order.
 [[nodiscard]] GridTally tallyOf(const openvdb::FloatGrid& grid);
 
 }  // namespace palpate::vdb

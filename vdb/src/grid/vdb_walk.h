@@ -23,7 +23,7 @@ class VdbWalk {
   VdbWalk(const VdbWalk&) = delete;
   VdbWalk& operator=(const VdbWalk&) = delete;
 
-  /// From the start of the file: checks the header, and every grid's name, metadata and transform;
+  /// Reads the file from its start: checks the header, every grid's name, metadata and transform;
   /// if the file can only be read in order, the trees too. Leaves the stream at its start.
   /// @throws std::runtime_error saying what is inconsistent, std::ios_base::failure where the file
   /// ends early.

@@ -27,7 +27,7 @@ struct Segment {
 
 class Segments {
  public:
-  /// From the header's key/value pairs. A segment keeps its label value unless an earlier one has
+  /// Reads the header's key/value pairs. A segment keeps its label value unless an earlier one has
   /// the same (in another layer); then it gets the smallest value above all others. @throws Error
   /// (kInput, nrrd.segment).
   Segments(const std::map<std::string, std::string>& pairs, int layers, std::string path);

@@ -101,7 +101,7 @@ void placeOf(const openvdb::FloatGrid& grid, const openvdb::CoordBBox& box, doub
     const openvdb::Vec3d p = grid.indexToWorld(index);
     return Vec3(p.x(), p.y(), p.z()) * meters;
   };
-  // From the map's own matrix, because differences of far points would lose digits.
+  // The axes come from the map's own matrix, because differences of far points would lose digits.
   const openvdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < 3; ++i) image.axes[axis][i] = m(axis, i) * meters;

@@ -178,7 +178,7 @@ Box3 boundsOf(const Image& image) {
 double MaterialGrid::Blocks::at(int i, int j, int k, int bits) const noexcept {
   const Block& block = blockOf(i, j, k);
   if (block.first == kUniform) return static_cast<double>(block.uniform);
-  // From the first of the 3^3 voxels to the middle one
+  // Offset from the first of the 3^3 voxels to the middle one.
   constexpr std::size_t kMiddle = (kRow + 1) * kRow + 1;
   const std::size_t voxel = block.first * kVolume + cornerOf(i, j, k) + kMiddle;
   if (bits == 8) return bytes[voxel];

@@ -79,8 +79,8 @@ class SharpEdges final : public Field {
   void forInnerWalls(const Tell& tell) const {
     for (const MeshTriangle& t : surface_.triangles) {
       pollStop();
-      // In rows along the longest side, so that the number of places for a needle depends only on
-      // its length.
+      // The places lie in rows along the longest side, so that the number of places for a needle
+      // depends only on its length.
       std::size_t apex = 0;
       for (std::size_t n = 1; n < 3; ++n) {
         if (glm::length(sideOpposite(t, n)) > glm::length(sideOpposite(t, apex))) apex = n;

@@ -22,7 +22,7 @@ class LatticeSpline {
   LatticeSpline(const LatticeSpline&) = delete;
   LatticeSpline& operator=(const LatticeSpline&) = delete;
 
-  /// At an index of the band's box; nothing if the band does not contain the neighborhood.
+  /// Value at an index of the band's box; nothing if the band does not contain the neighborhood.
   [[nodiscard]] std::optional<double> valueAt(const Vec3& index) const noexcept;
 
   struct Foot {

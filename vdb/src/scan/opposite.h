@@ -27,8 +27,8 @@ class Opposite {
   };
   static constexpr float kNone = 1e9F;
 
-  /// For the block whose first voxel is box voxel `first`. False if everything within reach is on
-  /// one side; then nothing is found.
+  /// Searches the block whose first voxel is box voxel `first`. False if everything within reach is
+  /// on one side; then nothing is found.
   bool find(const Mask& mask, const std::array<int, 3>& first, Found& found) const noexcept;
 
  private:

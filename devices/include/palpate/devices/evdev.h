@@ -18,7 +18,7 @@ namespace palpate::devices {
 /// True of every input device; used instead of kUnverifiedNotice.
 constexpr const char* kEvdevNotice = "force is shown, not felt; unverified on hardware";
 
-/// In the order in which makeEvdev() prefers them.
+/// Kinds of input devices, in the order in which makeEvdev() prefers them.
 enum class InputKind : std::uint8_t {
   kSpaceMouse,  ///< six axes: its cap's deflection is a velocity and an angular velocity
   kGamepad,     ///< its sticks' and triggers' deflections are velocities

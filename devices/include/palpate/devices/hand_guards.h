@@ -12,7 +12,7 @@
 
 namespace palpate::devices {
 
-/// For SessionSettings.
+/// What guardsOf() returns, to be put into SessionSettings.
 struct HandGuards {
   std::optional<PassivitySettings> passivity = {};  ///< no value: the scene asks for none
   std::optional<CouplingSettings> coupling = {};    ///< no value: the scene asks for none

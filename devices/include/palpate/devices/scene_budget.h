@@ -65,7 +65,7 @@ struct BudgetItem {
   [[nodiscard]] bool isAbove() const noexcept { return share > 1.0; }
 };
 
-/// In the order of feltItems(). Set-up only: allocates, and takes some ms for each item.
+/// Items in the order of feltItems(). Set-up only: allocates, and takes some ms for each item.
 /// @throws Error as largestStiffness().
 [[nodiscard]] PALPATE_EXPORT std::vector<BudgetItem> sceneBudget(const Scene& scene,
                                                                  const LoopModel& loop);

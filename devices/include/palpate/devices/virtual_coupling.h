@@ -27,7 +27,7 @@ struct ToolForce {
   double drag = 0.0;           ///< [N s/m] along any direction
 };
 
-/// Where the tool is.
+/// Where the tool is and how it moves.
 struct ToolMotion {
   Vec3 position{0.0, 0.0, 0.0};  ///< [m]
   Vec3 velocity{0.0, 0.0, 0.0};  ///< [m/s]

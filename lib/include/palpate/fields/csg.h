@@ -9,14 +9,14 @@
 
 namespace palpate {
 
-/// Inside any operand. @throws Error (kInput) if `operands` is empty or contains null; the same
-/// holds for the functions below.
+/// The union: the points inside any operand. @throws Error (kInput) if `operands` is empty or
+/// contains null; the same holds for the functions below.
 [[nodiscard]] PALPATE_EXPORT FieldPtr unite(std::vector<FieldPtr> operands);
 
-/// Inside all operands.
+/// The intersection: the points inside all operands.
 [[nodiscard]] PALPATE_EXPORT FieldPtr intersect(std::vector<FieldPtr> operands);
 
-/// Inside the first and outside all the others: intersect(first, complement(second), ...).
+/// The difference of the first and all the others: intersect(first, complement(second), ...).
 [[nodiscard]] PALPATE_EXPORT FieldPtr subtract(std::vector<FieldPtr> operands);
 
 /// The object turned inside out: -S.

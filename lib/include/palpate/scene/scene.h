@@ -73,7 +73,7 @@ class PALPATE_EXPORT Scene {
   [[nodiscard]] RendererKind renderer() const noexcept { return renderer_; }
   /// The renderers' limits where their own settings give none.
   [[nodiscard]] const ForceRequest& forceLimits() const noexcept { return force_; }
-  /// For the paper's renderer.
+  /// Parameters of the paper's renderer.
   [[nodiscard]] const PaperParameters& paper() const noexcept { return paper_; }
   /// How the device's space lies in the world.
   [[nodiscard]] const DeviceMapping& device() const noexcept { return device_; }

@@ -28,7 +28,7 @@ struct FeltHeight {
 /// continuous too. Caches the nodes around the last place. Real-time safe.
 class SmoothedField {
  public:
-  /// At `p` [m] within reach of the surface; `radius` [m] more than 0.
+  /// The smoothed field at `p` [m], within reach of the surface; `radius` [m] more than 0.
   [[nodiscard]] FeltHeight at(const Field& field, double radius, const Vec3& p) noexcept;
 
  private:

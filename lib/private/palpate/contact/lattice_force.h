@@ -11,7 +11,7 @@ struct LatticePush {
   double energy = 0.0;  ///< [J] 0 or more; 0 at the origin
 };
 
-/// At `p` [m, world]; `amplitude` is the lattice's force parameter there, or a replacement for it.
+/// Push at `p` [m, world]; `amplitude` is the lattice's force parameter there, or a replacement.
 [[nodiscard]] LatticePush latticePush(const Lattice& lattice, const MaterialMap::Sample& amplitude,
                                       const Vec3& p) noexcept;
 

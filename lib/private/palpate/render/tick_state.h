@@ -121,7 +121,7 @@ struct TickState {
   ForceGuard guard;  ///< it also holds the limits of the force
   SourceState source;
 
-  /// As an opaque value for others to keep.
+  /// This state as an opaque value for others to keep.
   [[nodiscard]] RendererState sealed() const noexcept;
   [[nodiscard]] static TickState of(const RendererState& sealed) noexcept;
 };

@@ -21,9 +21,9 @@ namespace palpate::vdb {
 /// "1, 5, 7"
 [[nodiscard]] std::string listOf(const std::vector<int>& labels);
 
-/// Without the blanks at its ends.
+/// `text` without the blanks at its ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
-/// With A to Z turned to lower case.
+/// `text` with A to Z turned to lower case.
 [[nodiscard]] std::string lowerCase(std::string_view text);
 
 /// Whether `path` ends with `extension`, in upper or lower case.
