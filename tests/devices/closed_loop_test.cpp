@@ -167,7 +167,8 @@ TEST(ClosedLoop, AWallsDampingMovesTheLimitAsTheExactOneDoes) {
 }
 
 TEST(ClosedLoop, OneSampleOfDelayMoreThanSaidWouldShow) {
-  // With one more sample of delay the limit would be a third: at twice that the run must not grow.
+  // With one more sample of delay the limit would be a third: at twice this third, a run without
+  // that delay must not grow.
   const LoopModel loop = linearLoop("falcon", "none", 1e-3, 0);
   LoopModel later = loop;
   later.delay = 1;

@@ -98,7 +98,7 @@ TEST(ContentLoops, ALatticeAtTheHandsResonanceSwingsAsItsClosedFormDoes) {
     const double resonance =
         std::sqrt(loop.hand->stiffness / mass) / (2.0 * std::numbers::pi);  // [Hz]
     const double speed = resonance * kWave;
-    // Along a line of nodes, and across the waves.
+    // The hand moves along a line of nodes, and across the waves.
     const LoopSetting setting{.loop = loop,
                               .hand = {{0.0, Vec3(0.0)}, {2.0, Vec3(2.0 * speed, 0.0, 0.0)}}};
     const LoopOutcome felt = runLoop(*ours, setting, slope);
@@ -161,8 +161,8 @@ std::vector<Round> rounds() {
       "wall, content: content}\nstart: {region: block}\n";
   constexpr double kWave = 5e-3;
   std::vector<Round> all;
-  // In by the port, over its rim inside the block, and out through it again; and in the opposite
-  // direction.
+  // The hand goes in by the port, over its rim inside the block, and out through it again; then in
+  // the opposite direction.
   for (const double side : {1.0, -1.0}) {
     all.push_back({side > 0.0 ? "round a rim" : "round a rim, the other way",
                    plain + block + "}\n" + hole + "}\n", Vec3(5e-3, 0.0, 0.0),

@@ -130,7 +130,8 @@ TEST(InputMap, ASpaceMouseMovesAndTurnsAboutTheFramesAxes) {
       turned.report(0, {{type, REL_RX + axis, 350}});
       turned->advance(40 * kMilli);
       EXPECT_EQ(turned->position(), Vec3(0.0));
-      // By 0.4 about u: u stays, and vectors perpendicular to it turn by the right-hand rule.
+      // The hand turned by 0.4 rad about u: u stays, and vectors perpendicular to it turn by the
+      // right-hand rule.
       const Vec3 u = directions[static_cast<std::size_t>(axis)];
       const Vec3 across(u.y, u.z, u.x);
       expectNear(turned->orientation() * u, u);

@@ -274,8 +274,8 @@ TEST_P(FaultMatrix, LeadsToItsStateItsTextAndZeroForceInTime) {
       EXPECT_EQ(rig.emulator.motors, (std::array<int, 3>{}));
     } else {
       std::printf("  %-32s the loop ended after %.1f ms: %s\n", fault.name, over, fault.text);
-      // At once; or when the next command is sent, which waits for two readings of up to 4 ms; or
-      // after the silence limit.
+      // The loop ends at once; or when the next command is sent, which waits for two readings of up
+      // to 4 ms; or after the silence limit.
       EXPECT_LE(over, fault.why == SafetyFault::kDevice ? 2.0 * 4.0 + 2.0 : 100.0 + 10.0);
     }
   }

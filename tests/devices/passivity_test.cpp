@@ -334,7 +334,7 @@ TEST(PassivityController, WhatItsDamperCannotHoldIsSoftened) {
   // counted.
   (void)guard.step(Vec3(0.0, 2e-5, 0.0), kTick, force, 0.0, 3.0 * 2e-5);
   EXPECT_NEAR(guard.observer().given(), 0.0, 1e-18);
-  // With an unknown stiffness, and with a permitted one.
+  // The force is unchanged with an unknown stiffness and with a permitted one.
   EXPECT_EQ(guard.step(Vec3(0.0, 2e-5, 0.0), kTick, force, 0.0, 0.0).force, force);
   EXPECT_EQ(guard.step(Vec3(0.0, 2e-5, 0.0), kTick, force, 1000.0, 0.0).force, force);
 }

@@ -130,7 +130,7 @@ layers:
     }
     return out;
   }
-  /// By the normal equations, with the mean of the readings as origin.
+  /// Solves the normal equations, with the mean of the readings as origin.
   [[nodiscard]] double slopeOfLine(std::size_t begin, int axis) const {
     double t = 0.0;
     double x = 0.0;

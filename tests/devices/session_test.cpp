@@ -107,7 +107,7 @@ TEST(Session, ContentsChangeWhenTheirTimeComes) {
   ASSERT_EQ(scene->regions()[1].name, "bath");
   Session session(scene, settings);
   for (int n = 0; n < 150; ++n) {
-    // Beside the ball, at 10 mm/s.
+    // The hand moves beside the ball at 10 mm/s.
     const SessionTick tick = session.step(
         {.time = n * kTick, .position = Vec3(0.03, -1e-5 * n, -0.01)}, DeviceFrame::kWorld);
     if (n < 20) continue;  // until the content has faded in

@@ -223,7 +223,7 @@ class FineAxis {
     for (std::size_t i = 0; i < 5; ++i) out[i] += h * slope[i];
     return out;
   }
-  /// At rest: decides whether it sticks or slips.
+  /// Called at rest: decides whether the device sticks or slips.
   void decide(double command, double p, double rate) {
     const double net = force(z_, command, p, rate);
     if (way_ == 0 && std::fabs(net) > s_.device.friction) way_ = net > 0.0 ? 1 : -1;
@@ -352,7 +352,7 @@ TEST(SimulatedDevice, WhereFrictionAndForceAreEqualButForRoundingItGoesOn) {
     settings.device = presets[static_cast<std::size_t>(i) % presets.size()].model();
     settings.hand = handPreset(hands[static_cast<std::size_t>(i) % hands.size()].name);
     SCOPED_TRACE(std::to_string(i));
-    // Onto a bowl of 30 mm from inside, at some height.
+    // The device is pressed from inside onto a bowl of 30 mm.
     const double stiffness = any(200.0, 1500.0);
     const Vec3 to(any(-0.05, 0.05), any(-0.05, 0.05), any(-0.05, 0.05));
     SimulatedDevice device(settings, Path{{0.0, Vec3(0.0)}, {any(0.3, 1.0), to}, {1.1, to}});

@@ -64,7 +64,7 @@ struct Row {
 };
 
 TEST(Stability, WithDelayTheLimitDependsOnTheRatiosAlone) {
-  // From simulations, to the digits given.
+  // These values come from simulations and hold to the digits given.
   constexpr std::array kWall = {Row{0.01, {0.0198, 0.0066, 0.0039, 0.0028}},
                                 Row{0.1, {0.1810, 0.0592, 0.0342, 0.0233}},
                                 Row{0.5, {0.6000, 0.1397, 0.0185, 0.0}}};

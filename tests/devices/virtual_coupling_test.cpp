@@ -172,8 +172,8 @@ TEST(CouplingDesign, ForAnySceneAsTheFrequencyResponseHasIt) {
     const double ticks = 1.0 + delay;
     EXPECT_DOUBLE_EQ(stiffestForAnyScene(loop(delay), 0.0), 2.0 * b / kTick / (ticks * ticks));
   }
-  // With an optimal damper: 0.769, 0.483, 0.354 b / T, at 0.3 to 0.4 b. Without delay no damper
-  // helps.
+  // With an optimal damper the stiffness is 0.769, 0.483, 0.354 b / T, at 0.3 to 0.4 b. Without
+  // delay no damper helps.
   EXPECT_EQ(couplingForAnyScene(loop(0)).damping, 0.0);
   const double best[] = {0.769, 0.483, 0.354};
   for (int delay = 1; delay <= 3; ++delay) {

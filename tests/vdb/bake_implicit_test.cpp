@@ -249,7 +249,8 @@ Touched touched(const Shape& shape, const FieldPtr& made, double voxel) {
     const Vec3 normal = glm::normalize(shape.field->sample(*on).gradient);
     const Vec3 hip = *on - depth * normal;
     const auto foot = footPoint(*shape.field, hip);
-    // Beyond a medial axis the hand is nearer to another side, so that the truth is another one.
+    // Beyond a medial axis the hand is nearer to another side of the surface: such points are
+    // skipped.
     if (!foot || glm::length(foot->point - *on) > 1e-3 * depth) continue;
     ++out.points;
     Drive drive(scene);
@@ -270,8 +271,8 @@ Touched touched(const Shape& shape, const FieldPtr& made, double voxel) {
 }
 
 TEST_P(BakeImplicit, TouchedEverywhereItGivesTheForceOfTheTrueSurface) {
-  // Before, metaballs at 2 mm gave 43.9 N instead of 1 N, and a heart no force in 1117 of 1549
-  // ticks of contact.
+  // An earlier version gave 43.9 N instead of 1 N for metaballs at 2 mm, and for a heart no force
+  // in 1117 of 1549 ticks of contact.
   const Shape& shape = GetParam();
   for (const double voxel : {2 * kMm, 1 * kMm, 0.5 * kMm}) {
     const LevelSet grid = bake(*shape.field, optionsOf(shape, voxel));
@@ -355,7 +356,8 @@ TEST(BakeImplicitEdges, WhatIsCutFromAnImplicitFieldHasItsEdgesAndWalls) {
     const openvdb::Coord at = value.getCoord();
     const Vec3 p = Vec3(at.x(), at.y(), at.z()) * voxel;
     wrong_side += (*value < 0.0F) != (both->value(p) < 0.0) ? 1 : 0;
-    // Inside, no farther than the ball's surface, where that is part of the surface.
+    // Inside, the distance is at most that to the ball's surface, where this is part of the
+    // surface.
     const Vec3 on_ball = glm::length(p) > 0.0 ? 30 * kMm * glm::normalize(p) : Vec3(0.0);
     if (*value < 0.0F && maze->value(on_ball) < 0.0) {
       farthest = std::max(farthest, -*value * kMm - (30 * kMm - glm::length(p)));

@@ -35,7 +35,8 @@ using Distance = std::function<double(const Vec3&)>;
 
 double toBall(const Vec3& p) { return glm::distance(p, kCenter) - kRadius; }
 
-/// For every voxel in and around the mesh, sign and value are right within `tolerance` voxels.
+/// Expects that for every voxel in and around the mesh the sign is right, and the value within
+/// `tolerance` voxels.
 void expectSolid(const LevelSet& set, const Distance& exact, double tolerance,
                  const std::function<bool(const Vec3&)>& leave_out = {}) {
   const openvdb::FloatGrid& grid = *set.impl().grid;

@@ -68,9 +68,9 @@ void expectSame(const LevelSet& got, const LevelSet& wanted) {
   }
 }
 
-/// Outside the same to rounding, inside no nearer to the surface. The difference: walls inside the
-/// solid, where a surface passes through itself by less than the lines of voxels show, are searched
-/// only in a mesh that is not closed as read.
+/// Expects the same values outside, up to rounding, and inside no values nearer to the surface. The
+/// reason for a difference inside: walls inside the solid, where a surface passes through itself by
+/// less than the lines of voxels show, are searched only in a mesh that is not closed as read.
 void expectSameSurface(const LevelSet& got, const LevelSet& wanted) {
   auto other = wanted.impl().grid->getConstAccessor();
   const double unit = wanted.info().voxel_size * 1e3;

@@ -27,7 +27,7 @@ struct Errors {
   double normal = 0.0;  ///< [radian] RMS
 };
 
-/// Within one voxel of the surface, at `count` points of `region`.
+/// The errors at `count` points of `region` within one voxel of the surface.
 Errors errorsOf(const Field& grid, const Field& exact, const Box3& region, double voxel,
                 int count) {
   Random random(11);
@@ -162,7 +162,7 @@ TEST(BricksAccuracy, ConvergesOnAGyroid) {
   const FieldPtr function = palpate::gyroid(Vec3(0.0), 40e-3);
   const Box3 box{Vec3(-9e-3), Vec3(9e-3)};
   const FieldPtr exact = distanceTo(function, box);
-  // Away from the cutting faces, where the box would decide.
+  // The region keeps away from the cutting faces, where the box would decide.
   const Box3 region{Vec3(-3e-3), Vec3(3e-3)};
   const double radius = 6e-3;
   const Errors coarse = expectOrders("gyroid", *exact, region, radius, {8.0, 16.0}, box);

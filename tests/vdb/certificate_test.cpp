@@ -92,7 +92,7 @@ TEST(Certificate, IsKeptWithTheGridUnderAHashOfItsContent) {
   auto voxel = copy->beginValueOn();
   voxel.setValue(std::nextafter(*voxel, 100.0F));
   EXPECT_FALSE(storedCertificate(makeLevelSet(copy, "mm")));
-  // So it does if a voxel is missing.
+  // The hash also differs if a voxel is missing.
   const openvdb::FloatGrid::Ptr less = read.impl().grid->deepCopy();
   less->beginValueOn().setValueOff();
   EXPECT_FALSE(storedCertificate(makeLevelSet(less, "mm")));

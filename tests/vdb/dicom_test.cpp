@@ -232,7 +232,7 @@ TEST(DicomResampled, ALinearFieldIsTheSameFieldWhereverTheSlicesLie) {
         }
       }
     }
-    // From the first slice to the last, and no slice's corner outside.
+    // The image reaches from the first slice to the last, and no slice has a corner outside it.
     const auto height = [&](const Vec3& lps) {
       return glm::dot(1e-3 * Vec3(-lps.x, -lps.y, lps.z) - image.origin, normal);
     };

@@ -34,7 +34,7 @@ TEST(GridImage, HoldsTheDistanceWhereItIs) {
       for (int i = 0; i < image.size[0]; ++i) {
         const Vec3 at = image.toWorld(Vec3(i, j, k));
         const double distance = 1e3 * (glm::length(at - Vec3(0.0115, -0.0202, 0.0303)) - 0.008);
-        // In mm, as a float; beyond the band it is the band's width.
+        // The distance is in mm, as a float; beyond the band it is the band's width.
         ASSERT_NEAR(image.at(i, j, k), std::clamp(distance, -3.0, 3.0), 1e-5) << i << j << k;
       }
     }

@@ -131,7 +131,7 @@ void checkSeams(const char* name, const Image& image, bool by_themselves = true)
       ++corners;
     }
     if (own == 0) return;
-    // Between neighbors.
+    // Look at the walls between this voxel and its neighbors.
     for (std::size_t a = 0; a < 3; ++a) {
       std::array<int, 3> next = v;
       ++next[a];

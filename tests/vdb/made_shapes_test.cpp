@@ -100,7 +100,7 @@ TEST(MadeShell, OfOneToTwoVoxelsHasTwoWallsAndNoHole) {
           pressed(scene, center + (wall + side * 3.0) * way, center + (wall - side * 0.4) * way);
       EXPECT_TRUE(held.contact);
       EXPECT_GT(side * glm::dot(held.force, way), 0.0);
-      // Within a third of a voxel, like walls of labels.
+      // The wall is right within a third of a voxel, like walls of labels.
       EXPECT_NEAR(glm::length(held.force), 500.0 * 0.4 * kMm, 500.0 * 0.33 * kMm);
     }
   }

@@ -189,8 +189,8 @@ TEST(SharpEdges, WhatIsNotOneClosedSurfaceIsRefused) {
 }
 
 TEST(SharpEdges, AWallWithinTheSolidBesideASharpEdgeIsNotFelt) {
-  // Inside the can, three and a half voxels from its rim, deeper than the grid rounds anything off:
-  // a separate part there is left out.
+  // The ball is inside the can, three and a half voxels from its rim, deeper than the grid rounds
+  // anything off: such a separate part is left out.
   const Vec3 within(13.4 * kMm, 0.0, 8.4 * kMm);
   const Fields fields = fieldsOf(together(can(160), ballMesh(within, 0.4 * kMm, 2)));
   for (int n = 0; n < 100; ++n) {
@@ -200,7 +200,8 @@ TEST(SharpEdges, AWallWithinTheSolidBesideASharpEdgeIsNotFelt) {
 }
 
 TEST(SharpEdges, BesideAWallThatPassesThroughAnotherTheGridAnswers) {
-  // Through the side of the can just below its rim: the rim itself stays outside the ball.
+  // The ball passes through the side of the can just below its rim; the rim itself stays outside
+  // the ball.
   const Vec3 middle(15.0 * kMm, 0.0, 7.0 * kMm);
   const Mesh mesh = together(can(160), ballMesh(middle, 2.0 * kMm, 3));
   const FieldPtr bricks = gridField(bakeMesh(mesh, voxels(kVoxel)));
@@ -252,7 +253,7 @@ TEST(SharpEdges, PartsThatAreInsideOutOrWithinOthersAreTheSolidThatWasBaked) {
     ASSERT_NEAR(here.value, wanted.value, 1e-3 * kVoxel);
   }
   EXPECT_GT(near, 2000);
-  // Inside the cube near one of its edges, and outside it.
+  // The value is right inside the cube near one of its edges, and outside it.
   const Vec3 edge = beside + Vec3(5 * kMm, 5 * kMm, 0.0);
   EXPECT_NEAR(dirty.sharp->value(edge - Vec3(0.2 * kMm, 0.2 * kMm, 0.0)), -0.2 * kMm, 1e-9);
   EXPECT_NEAR(dirty.sharp->value(edge + Vec3(0.3 * kMm, 0.4 * kMm, 0.0)), 0.5 * kMm, 1e-9);
@@ -263,7 +264,8 @@ TEST(SharpEdgesContact, AroundTheRimOfACanAsAroundTheTrueOne) {
   Drive sharp(sceneOfSolid(fields.sharp));
   Drive rounded(sceneOfSolid(fields.bricks));
   Drive truth(sceneOfSolid(trueCan()));
-  // Over the rim from the side to the top, a millimeter deep, 0.1 mm per tick, all around.
+  // The hand goes over the rim from the side to the top, a millimeter deep, 0.1 mm per tick, at 40
+  // places around the can.
   double worst[2] = {0.0, 0.0};
   int contacts = 0;
   for (int line = 0; line < 40; ++line) {

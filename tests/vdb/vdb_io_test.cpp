@@ -158,7 +158,7 @@ TEST(VdbIo, PythonReadsIt) {
   const std::string path = folder.path("a.vdb");
   const LevelSet set = ball("skin/surface");
   write(path, {set, ball("bone/surface", 4e-3)});
-  // In the band, outside, far outside, and deep inside.
+  // These voxels are in the band, outside, far outside, and deep inside.
   const std::vector<Coord> voxels_asked{
       {12, 0, 0}, {-3, 11, 2}, {20, 0, 0}, {300, 0, 0}, {0, 0, 0}};
   std::string command = "/usr/bin/python3 '" + palpate::test::sourceFolder() +

@@ -137,8 +137,8 @@ TEST(LocalProjection, SettlesFarFromTheOriginDownToRounding) {
   }
 }
 
-/// Inside a cone that stands on its tip: if the target is in the cone of the tip's normals, the tip
-/// is the nearest place, else the foot on the side.
+/// The proxy is inside a cone that stands on its tip: if the target is in the cone of the tip's
+/// normals, the tip is the nearest place, else the foot on the side is.
 TEST(LocalProjection, ByCutsFindsTheTipAndTheSideOfAHollowCone) {
   const double height = 4e-3;
   const FieldPtr field = cone(Vec3(0.0, 0.0, height), Vec3(0.0, 0.0, -1.0), height, height);

@@ -164,13 +164,13 @@ TEST(Sweep, FromTheSurface) {
       }
     }
   }
-  // From inside, along a chord: free across the interior, then a hit on the opposite wall.
+  // From inside, a sweep along a chord is free across the interior, then hits the opposite wall.
   const SweepSurface within = surfaceOf(ball, -1.0);
   const Vec3 chord = glm::normalize(Vec3(-1, 1, 0));
   const SweepResult hit = sweep(within, on, on + 0.1 * chord, 0.0, 256);
   ASSERT_EQ(hit.kind, Kind::kHit);
   EXPECT_NEAR(hit.at * 0.1, 0.03 * std::sqrt(2.0), 1e-9);
-  // Along the tangent from outside: never through.
+  // From outside, a sweep along the tangent never goes through the wall.
   EXPECT_EQ(sweep(surfaceOf(ball, 1.0), on, on + Vec3(0, 0.1, 0), 0.0, 256).kind, Kind::kFree);
 }
 
@@ -251,7 +251,7 @@ TEST(Sweep, NarrowsDownInFewLooks) {
       const SweepSurface s{&field, 1.0, field.lipschitz(), 1e-10, 1.0};
       const SweepResult out = sweep(s, Vec3(0, 0, 1), Vec3(0.0), start, 64);
       ASSERT_EQ(out.kind, Kind::kHit);
-      // On the near side of the surface, closer to it than the tolerance.
+      // The hit is on the near side of the surface, closer to it than the tolerance.
       EXPECT_LE(out.at, 1.0 - at);
       EXPECT_GT(out.at, 1.0 - at - 1e-9);
       // The end, and one secant step if the value is linear. If it is curved, one end would stay

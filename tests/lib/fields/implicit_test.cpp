@@ -260,8 +260,8 @@ TEST(Metaballs, AreSmoothWhereTheSurfaceTouchesTheBounds) {
     const Box3 bounds = field->bounds();
     Random random(3);
     for (int i = 0; i < 600; ++i) {
-      // Across a face: at the place where the surface touches it, near that, or anywhere on it; and
-      // across the planes at an edge.
+      // Check across a face: at the place where the surface touches it, near that place, or
+      // anywhere on the face or its plane beyond the edges.
       const int axis = i % 3;
       Vec3 p = i < 200   ? kCenter
                : i < 400 ? kCenter + random.in({Vec3(-1e-3), Vec3(1e-3)})

@@ -97,7 +97,7 @@ TEST(Cone, HasEuclideanDistanceToSlantBaseTipAndRim) {
   EXPECT_EQ(field->value(Vec3(0, 0, 6)), 2.0);
   EXPECT_EQ(field->value(Vec3(1, 1, -2)), 2.0);
   EXPECT_EQ(field->value(Vec3(6, 0, -4)), 5.0);
-  // From the middle of the slant along its normal (4, 3) / 5.
+  // These points lie on the normal (4, 3) / 5 through the middle of the slant.
   EXPECT_NEAR(field->value(Vec3(1.5 + 0.8, 0, 2 + 0.6)), 1.0, 1e-15);
   EXPECT_NEAR(field->value(Vec3(1.5 - 0.4, 0, 2 - 0.3)), -0.5, 1e-15);
   EXPECT_EQ(field->structure().kind, FieldStructure::Kind::kFaces);

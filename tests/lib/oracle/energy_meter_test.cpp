@@ -9,8 +9,8 @@ namespace {
 constexpr double kRounding = 1e-15;
 
 TEST(EnergyMeter, ASampledSpringLeaksStiffnessTimesStepTimesDepth) {
-  // In by n equal steps and out again: F_k is held over the next step, so on the way back each step
-  // gains the force of one step deeper; in total K step (x_n - x_0).
+  // The hand goes in by n equal steps and out again: F_k is held over the next step, so on the way
+  // back each step gains the force of one step deeper; in total K step (x_n - x_0).
   const double stiffness = 1000.0;
   const double step = 1e-4;
   const int n = 20;
@@ -21,7 +21,7 @@ TEST(EnergyMeter, ASampledSpringLeaksStiffnessTimesStepTimesDepth) {
   }
   EXPECT_NEAR(meter.work(), stiffness * step * step * n, kRounding);
   EXPECT_NEAR(meter.gained(), meter.work(), kRounding);
-  // On the way in: the sum of K (k step) step for k = 0 ... n - 1.
+  // The energy stored on the way in is the sum of K (k step) step for k = 0 ... n - 1.
   const double stored = stiffness * step * step * n * (n - 1) / 2.0;
   EXPECT_NEAR(meter.rebound(), stored + meter.work(), kRounding);
 }

@@ -74,8 +74,8 @@ TEST(Oracle, AProxyAboveAHipPastTheCenterRunsRoundToTheOtherSide) {
 }
 
 TEST(Oracle, ATieIsAmbiguous) {
-  // On top of a tall thin ellipsoid, pressed beyond the tip's center of curvature: it falls to the
-  // left or right.
+  // The proxy is on top of a tall thin ellipsoid, pressed beyond the tip's center of curvature: it
+  // falls to the left or right.
   const Vec3 radii(0.005, 0.012, 0.02);
   const FeasibleSet set = FeasibleSet::outside(ellipsoidField(radii, 0.00125));
   const OracleResult result = solveOracle(set, Vec3(0.0, 0.0, 0.02), Vec3(0.0, 0.0, 0.01));
@@ -174,7 +174,7 @@ TEST(Oracle, ABoxFromOutsideHoldsItsFaceUntilTheHipLeavesSideways) {
   const FeasibleSet around = aroundBoxSet(lo, hi);
   // Deep under the top, much nearer to the right face: the top still holds the proxy.
   expectProxy(around, Vec3(0.0, 0.0, 0.01), Vec3(0.009, 0.0, -0.005), Vec3(0.009, 0.0, 0.01));
-  // Out through the right face: nothing holds it any more.
+  // The hand goes out through the right face: nothing holds the proxy any more.
   const Vec3 outside(0.012, 0.0, -0.005);
   expectProxy(around, Vec3(0.009, 0.0, 0.01), outside, outside);
 }

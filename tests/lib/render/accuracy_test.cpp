@@ -45,7 +45,7 @@ void stroke(Drive& drive, double speed, int ticks, const std::function<Vec3(cons
 TEST(Accuracy, BallConvexAndHollowOfEverySize) {
   for (const double radius : {0.05, 0.01, 0.002, 0.0005}) {
     for (const bool hollow : {false, true}) {
-      // Up to 0.9 R deep on the outside; up to 20 R in the hollow.
+      // The hand presses up to 0.9 R deep on the outside, up to 20 R in the hollow.
       for (const double share : {0.02, 0.5, hollow ? 20.0 : 0.9}) {
         // A tick turns the hand by at most 0.3 rad as seen from the center: for larger turns the
         // direction around the ball is not unique.
@@ -132,7 +132,8 @@ TEST(Accuracy, AConvexEdgeHoldsItsFaceAndThenLetsGo) {
   Drive drive(sceneOf(oneLayer(kBox)));
   (void)drive.walk(mm(0, 0, 12));
   (void)drive.walk(mm(0, 0, 8));
-  // Over the edge at x = 30, 2 mm deep: K d on the top face until it ends, then zero.
+  // The hand goes over the edge at x = 30, 2 mm deep: the force is K d on the top face until it
+  // ends, then zero.
   for (double x = 0.0; x < 40.0; x += 0.25) {
     const TickResult& out = drive.to(mm(x, 0, 8));
     if (x == 30.0) continue;  // exactly on the edge both are right

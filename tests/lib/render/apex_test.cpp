@@ -119,7 +119,7 @@ TEST(Apex, InThePlaneOfAnotherLayerAFrozenHandIsToldThatItRests) {
 
 TEST(Apex, CirclingInAConeGivesNoEnergy) {
   const ScenePtr scene = sceneOfSolid(cone(Vec3(0.0), Vec3(0, 0, 1), 0.010, 0.030), true);
-  // Around the axis, from within the cone of normals to well outside it.
+  // The hand goes around the axis, from within the cone of normals to well outside it.
   for (const double radius : {0.3e-3, 1e-3, 2e-3, 3e-3}) {
     for (const double height : {28e-3, 30.5e-3, 32e-3}) {
       if (kSanitized && radius != 1e-3) continue;

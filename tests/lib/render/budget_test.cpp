@@ -35,7 +35,7 @@ void leap(std::uint64_t number, Tally& tally) {
   Vec3 p = *start;
   for (int i = 0; i < 60; ++i) {
     if (i % 4 != 3) {
-      // From small steps to jumps across the scene.
+      // The steps range from small ones to jumps across the scene.
       const double far = std::pow(10.0, random.uniform(-4.0, -1.3));
       p = last + far * random.direction();
     }

@@ -36,7 +36,8 @@ ports:
          shell + ", core], after: [skin]}\n";
 }
 
-/// Through the skin and the gate to the middle, out through the hole and in again. [m]
+/// [m] A hand's path through the skin and the gate to the middle, out through the hole and in
+/// again.
 std::vector<Vec3> thereAndBack() {
   std::vector<Vec3> out;
   for (int i = 0; i <= 2000; ++i) {
@@ -197,7 +198,7 @@ TEST(CarriedState, TheContentBehindAnOpenMouthFadesAsItDid) {
   const ScenePtr after = sceneOf(
       text("  - {name: wart, inside: {sphere: {center: [90, 0, 0], radius: 5}}, wall: skin}\n"));
   for (const ScenePtr& to : {before, after}) {
-    // Within the fade, and far behind it.
+    // These depths are within the fade, and far behind it.
     for (const double depth : {0.05, 0.15, 15.0}) {
       SCOPED_TRACE(depth);
       Drive hand(before);
@@ -250,7 +251,7 @@ ports: [{name: c, between: [outside, side], opens_at: 0.5 N, rearm: 30}]
   EXPECT_TRUE(carried.lost.empty());
   const auto edited = makeRenderer(scene);
   ASSERT_TRUE(edited->setState(carried.state));
-  // Out again: 5 mm at 500 N/m, where a port that does not rest would open at 0.5 N.
+  // The hand goes out again: 5 mm at 500 N/m, where a port that does not rest would open at 0.5 N.
   expectTheSameOnTheWay(*edited, hand.renderer(), mm(0, 0, 22.5), mm(0, 0, 30));
   EXPECT_NEAR(edited->update({mm(0, 0, 30), Vec3(0.0)}).force.z, -2.5, 1e-6);
 }

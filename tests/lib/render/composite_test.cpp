@@ -88,8 +88,8 @@ struct Loop {
   double stored = 0.0;  ///< [J]
 };
 
-/// Around and around over the lump's middle and its rim, at varying depth. The wall is a ball of
-/// `radius` [m], or a plane if that is 0.
+/// Moves the hand around over the lump's middle and its rim, at varying depth. The wall is a ball
+/// of `radius` [m], or a plane if that is 0.
 Loop goRound(const ScenePtr& scene, double radius, int ticks) {
   Drive hand(scene);
   Loop loop;
@@ -141,8 +141,8 @@ TEST(Composite, AClosedWayOverTheLumpCostsAndGivesNothing) {
 }
 
 TEST(Composite, AcrossTheRimOfALumpLittleIsLeft) {
-  // Over the rim of a ball the ray grazes it, and the depths of its interfaces have no slope there:
-  // that part of the force is missing. This test counts it.
+  // At the rim of a ball the ray grazes the ball, and the depths of the interfaces along the ray
+  // have no slope there: that part of the force is missing. This test limits the work that results.
   const std::string layers = R"(layers:
   - {name: tissue, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]}}, wall: skin}
   - {name: lump, inside: {sphere: {center: [0, 0, -13], radius: 5}}, wall: knot}
@@ -172,7 +172,7 @@ TEST(Composite, TheRimOfALumpIsNoEdge) {
   // The stiffness rises by 270 N/m over 5 mm, at most by 2e5 N/m^2, times half the square of the
   // depth. With a sharp rim there would be no bound.
   EXPECT_LT(sideways, 0.1);
-  // Over a way of 10 um; less than can be felt (0.04 N).
+  // Over a way of 10 um the force changes by less than can be felt (0.04 N).
   EXPECT_LT(step, 0.02);
 }
 

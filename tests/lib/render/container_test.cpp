@@ -114,8 +114,8 @@ TEST_P(Container, TheMouthIsNotEnteredWithoutPassingIt) {
 
 TEST(ContainerRim, TheProxySlidesOverItFromOutside) {
   Drive drive(sceneOf(containerText()));
-  // Up a meridian, 1 mm deep: pressed until the proxy reaches the rim (z = 15), then the proxy
-  // drops in.
+  // The hand goes up a meridian, 1 mm deep: the wall is pressed until the proxy reaches the rim (z
+  // = 15), then the proxy drops in.
   const double rim = std::asin(15.0 / 40.0);
   (void)drive.walk(mm(39, 0, 0));
   for (double angle = 0.0; angle < rim + 0.1; angle += 1e-3) {

@@ -124,8 +124,8 @@ layers: [{name: river, inside: {half_space: {point: [0, 0, 0], normal: [0, 0, 1]
 ports: [{name: bank, between: [outside, river]}]
 )"));
   EnergyMeter meter;
-  // With the flow in the river, slower than it, and back through the air. In each round the flow
-  // pushes the hand along.
+  // The hand moves with the flow in the river, slower than the flow, and back through the air. In
+  // each round the flow pushes the hand along.
   for (int round = 0; round < 5; ++round) {
     for (int i = 0; i <= 1000; ++i) {
       const Vec3 p = mm(-20 + 0.04 * i, 0, -5);
@@ -139,8 +139,8 @@ ports: [{name: bank, between: [outside, river]}]
   EXPECT_GT(meter.work(), 0.02);
   const double source = hand.renderer().sourceWork();
   EXPECT_GT(source, meter.work());
-  // In full: 4 N s/m * 0.1 m/s = 0.4 N along 40 mm, five times; the first quarter millimeter of
-  // each fades.
+  // The full force is 4 N s/m * 0.1 m/s = 0.4 N along 40 mm, five times; it is still fading in
+  // along the first quarter millimeter of each.
   EXPECT_NEAR(source, 5 * 0.4 * 0.04, 5 * 0.4 * 0.5e-3);
   hand.renderer().reset();
   EXPECT_EQ(hand.renderer().sourceWork(), 0.0);

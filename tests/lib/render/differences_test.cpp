@@ -87,8 +87,8 @@ TEST(Differences, TickClassesOnTheContainer) {
 }
 
 TEST(Differences, AJumpOverRow2MissesThePaperPort) {
-  // From (out, out) to (in, in) in one tick: Table I does not see its row 2, the proxy went through
-  // the mouth.
+  // The hand jumps from (out, out) to (in, in) in one tick: Table I does not see its row 2; the
+  // constraint renderer's proxy goes through the mouth.
   Drive paper(sceneOf(containerText()), RendererKind::kPaper);
   Drive constraint(sceneOf(containerText()));
   for (Drive* drive : {&paper, &constraint}) {

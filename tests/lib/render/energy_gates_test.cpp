@@ -166,7 +166,7 @@ TEST(EnergyGatesOfComposite, WallsAtACreaseWithWhatLiesBehindThemGiveNoEnergy) {
         "}}\n  b: {stiffness: " + std::to_string(random.uniform(100.0, 3000.0)) +
         " N/m}\nlayers:\n  - {name: a, inside: {half_space: {point: [0, 0, 0], normal: " +
         text(up) + "}}, wall: a}\n  - {name: b, inside: {" + second + "}, wall: b}\n");
-    // Into the crease, along the bisector of the open angle.
+    // The loop's center is pressed into the crease, along the bisector of the open angle.
     const Vec3 out = glm::normalize(up + other);
     const Vec3 center = random.uniform(-1.2e-3, -0.2e-3) * out;
     const EnergyLoop loop = randomLoop(random, center, 0.05e-3, 0.7e-3);

@@ -107,7 +107,7 @@ TEST(ExampleScenes, TheFlagHoldsInAirAndWater) {
   EXPECT_TRUE(hand.last().contact);
   EXPECT_EQ(hand.region(), "outside");
   EXPECT_GT(hand.last().force.x, 0.4);
-  // Down along the flag into the water, still in front of it.
+  // The hand goes down along the flag into the water, still in front of the flag.
   (void)hand.walk(mm(-1, 0, -15));
   EXPECT_EQ(hand.region(), "water");
   EXPECT_EQ(hand.events(), "surface");

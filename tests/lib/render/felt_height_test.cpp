@@ -75,7 +75,7 @@ TEST(SmoothedField, GradientIsThatOfTheValueAndHasNoStep) {
   const double radius = 1e-3;
   Vec3 last(0.0);
   double steepest = 0.0;
-  // Over an edge, a corner and a face.
+  // The path leads over an edge, a corner and a face.
   for (int i = 0; i <= 4000; ++i) {
     const Vec3 p = Vec3(0.0101, 0.008, 0.0065) + (i / 4000.0) * Vec3(-0.0015, 0.003, 0.0045);
     const FeltHeight here = smoothed.at(*box, radius, p);
@@ -93,7 +93,8 @@ TEST(SmoothedField, GradientIsThatOfTheValueAndHasNoStep) {
     if (i > 0) steepest = std::max(steepest, glm::length(here.gradient - last));
     last = here.gradient;
   }
-  // Over a way of 1.4 um: an edge turns by 90 degrees over about the radius.
+  // This is the change over a way of 1.4 um: at an edge the gradient turns by 90 degrees over about
+  // the radius.
   EXPECT_LT(steepest, 1.6 * 1.5 * 1.5e-6 / radius);
   // A plane is unchanged.
   const FieldPtr plane = halfSpace(mm(1, 2, 3), glm::normalize(Vec3(1, 2, -2)));

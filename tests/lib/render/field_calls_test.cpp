@@ -85,7 +85,7 @@ class FieldCalls : public ::testing::Test {
   Calls calls_;
 };
 
-/// On a circle of `radius` [m] that is not in a coordinate plane.
+/// The hand's path on a circle of `radius` [m] that is not in a coordinate plane.
 std::function<Vec3(int)> circle(double radius, double step) {
   return [=](int i) {
     const double turn = step * i;
@@ -149,7 +149,7 @@ TEST_F(FieldCalls, AlongACreaseEachOfTwoWallsIsAskedTwice) {
                                               counted(halfSpace(Vec3(0.0), Vec3(-0.6, 0, 0.8)))}));
   expect(
       groove, mm(0, 0, 5), [](int i) { return mm(0, 0.2 * i, -1); }, 200, 2, 6);
-  // Into the crease, and out of it along either wall.
+  // The hand goes into the crease, and out of it along either wall.
   expect(
       groove, mm(0, 0, 5), [](int i) { return mm(4.0 * std::sin(0.05 * i), 0.2 * i, -1); }, 400, 4,
       8);

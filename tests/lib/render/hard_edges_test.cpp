@@ -26,7 +26,7 @@ struct Walk {
   double grant = 1.0;
 };
 
-/// Between the faces of a box, and now and then out to the free point.
+/// Judges a walk between random points of a box, and now and then out to the free point.
 void judgeWalk(const Walk& w, int seed) {
   SCOPED_TRACE(::testing::Message()
                << w.name << (w.from_within ? " from within" : " from outside"));
@@ -97,8 +97,8 @@ TEST(HardEdges, GrooveOfTenDegreesByClosedForm) {
 }
 
 TEST(HardEdges, FoldOfEveryAngle) {
-  // Around a blade whose two sides are each tilted by half the angle: held on either side, released
-  // at its edge.
+  // The hand moves around a blade whose two sides are each tilted by half the angle: it is held on
+  // either side, and released at the edge.
   for (const double degrees : {10.0, 90.0, 170.0}) {
     SCOPED_TRACE(degrees);
     judgeWalk(

@@ -155,7 +155,7 @@ void judgeSmoothWay(Judge& judge, const Vec3& from, const Pace& pace, NextGoal&&
   }
 }
 
-/// Between random points of a box, and after every five of them back to the free point.
+/// Walks between random points of a box, and after every five of them back to the free point.
 inline void judgeWalk(Judge& judge, const Vec3& free, const Box3& box, double speed, int seed,
                       int ticks) {
   Random random(static_cast<std::uint64_t>(seed));

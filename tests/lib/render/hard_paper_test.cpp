@@ -80,13 +80,13 @@ TEST(HardPaper, Figure21TheCrossingPointNotTheClosest) {
   const Vec3 crossing = mm(-40, 30, 0);
   const Vec3 closest = radius * glm::normalize(to);
   ASSERT_GT(glm::length(closest - crossing), 0.02);
-  // In one tick the paper's renderer finds the crossing point ...
+  // In one tick the paper's renderer finds the crossing point.
   Drive paper(sceneOfSolid(sphere(Vec3(0.0), radius)), RendererKind::kPaper);
   (void)paper.to(from);
   EXPECT_TRUE(isNear(paper.to(to).proxy, crossing, 2e-6));
-  // ... which a rule that forgets the path does not: the constraint renderer goes through it, on
-  // the side where the hand entered, and slides on from there to the one nearest point of this
-  // convex surface.
+  // A rule that forgets the path would not find it. The constraint renderer's proxy passes this
+  // point, on the side where the hand entered, and slides on from there to the one nearest point of
+  // this convex surface.
   Drive constraint(sceneOfSolid(sphere(Vec3(0.0), radius)));
   (void)constraint.to(from);
   EXPECT_TRUE(isNear(constraint.to(to).proxy, closest, 1e-9));

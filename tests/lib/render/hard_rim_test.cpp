@@ -115,8 +115,8 @@ TEST(HardRim, PressingAtItFromBothSidesDoesNotChatter) {
 }
 
 TEST(HardRim, SlidingAlongItFromBothSidesDoesNotChatter) {
-  // Around the rim, weaving across it: at most one event for each time that the hand's way crosses
-  // the edge.
+  // The hand goes around the rim, weaving across it: there is at most one event for each time that
+  // its way crosses the edge.
   const double rim = std::asin(kBrim / kRadius);
   for (const bool inside : {false, true}) {
     for (const double depth : {0.3e-3, 1e-3, 4e-3}) {

@@ -1,5 +1,5 @@
-// Where a surface has no normal, or the field no scale: apexes, cusps, saddles, gradients that vary
-// a hundredfold.
+// Places where a surface has no normal, or the field no scale: apexes, cusps, saddles, gradients
+// that vary a hundredfold.
 
 #include <gtest/gtest.h>
 
@@ -87,7 +87,8 @@ TEST(HardSingular, ConeApexStraightOn) {
 }
 
 TEST(HardSingular, StraightThroughABallsCenterTheNearSideIsFelt) {
-  // Beyond the center the entry point is stationary, but it is the farthest point of all: 35 N.
+  // Beyond the center the distance is stationary at the entry point too, but there it is the
+  // largest of all: a proxy held there would give 35 N.
   for (const Vec3& way : {Vec3(0, 0, 1), Vec3(1, 0, 0), glm::normalize(Vec3(1, 2, 3))}) {
     Drive drive(sceneOfSolid(sphere(Vec3(0.0), 0.02)));
     (void)drive.to(0.03 * way);
@@ -99,7 +100,8 @@ TEST(HardSingular, StraightThroughABallsCenterTheNearSideIsFelt) {
 }
 
 TEST(HardSingular, HollowConeApex) {
-  // From inside: beyond the tip the tip itself is nearest, as long as P is in the cone of normals.
+  // The hand is beyond the tip, pressed from inside: the tip is nearest as long as P is in the cone
+  // of normals.
   const FieldPtr field = cone(Vec3(0.0), Vec3(0, 0, 1), 0.015, 0.04);
   Drive drive(sceneOfSolid(field, true));
   (void)drive.walk(mm(0, 0, 10));
@@ -125,8 +127,8 @@ TEST(HardSingular, HeartFromOutside) {
 }
 
 TEST(HardSingular, HeartCuspPressed) {
-  // Into the dimple between the lobes, and onto the tip below: finite, steady, and the proxy never
-  // inside.
+  // The hand presses into the dimple between the lobes, and onto the tip below: the force is finite
+  // and steady, and the proxy never inside.
   const FieldPtr field = heart(Vec3(0.0), 0.06);
   for (const double up : {1.0, -1.0}) {
     Drive drive(sceneOfSolid(field));

@@ -25,7 +25,7 @@ double degreesBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) / kDegree;
 }
 
-/// Along a circle whose plane contains no axis of the ball.
+/// Errors on a stroke along a circle whose plane contains no coordinate axis.
 Errors strokeAround(RendererKind kind, double revolutions) {
   const Vec3 center = mm(3, -2, 7);
   const Vec3 a = glm::normalize(Vec3(1, 2, -0.5));

@@ -101,7 +101,7 @@ TEST(InsideCorners, VGroovesOfEveryAngle) {
     (void)drive.to(mm(0, 0, 20));
     const TickResult& down = drive.walk(mm(0, 0, -3));
     EXPECT_TRUE(isNear(down.force, Vec3(0, 0, 3), 1e-5)) << degrees;
-    // Along the groove, with the hand moving slightly to the sides.
+    // The hand goes along the groove, moving slightly to the sides.
     for (double y = 0.0; y < 20.0; y += 0.5) {
       // The bottom holds the proxy while P is off the middle by less than the walls' normals
       // permit: 3 / tan a.

@@ -60,7 +60,8 @@ TEST(LabelGroupFelt, FromOneLabelIntoTheOtherByTheirOneWall) {
   (void)closed.to(mm(-10, 3, 0));
   EXPECT_TRUE(isNear(closed.walk(mm(3, 3, 0)).force, Vec3(-3, 0, 0), 1e-7));
   EXPECT_EQ(closed.region(), "a");
-  // Inside a, up along the shared wall to the rim: held by the wall and the surface together.
+  // Inside `a` the hand goes up along the shared wall to the rim: the wall and the surface together
+  // hold the proxy.
   const TickResult& corner = closed.walk(mm(3, 23, 0));
   EXPECT_TRUE(isNear(corner.proxy, mm(0, 20, 0), 1e-7));
   EXPECT_TRUE(isNear(corner.force, 1000.0 * (corner.proxy - closed.hip()), 1e-4));

@@ -18,8 +18,8 @@ struct Behind {
   int ticks = 0;      ///< number in which that was more than allowed
 };
 
-/// Inside a box of 60 x 40 x 20 mm, with the hand 3 mm beyond x = 30 mm and `aside` beyond z = 10
-/// mm, moving along y by 20 mm.
+/// The proxy is inside a box of 60 x 40 x 20 mm; the hand, 3 mm beyond x = 30 mm and `aside` beyond
+/// z = 10 mm, moves along y by 20 mm.
 Behind alongEdge(double aside, const Material& wall, double allowed, double rest_from_y) {
   Drive drive(sceneOfSolid(box(Vec3(0.0), mm(60, 40, 20)), true, wall));
   (void)drive.to(Vec3(0.0));
@@ -55,7 +55,8 @@ TEST_P(LeftBehind, NotWithFrictionByMoreThanItsCone) {
 }
 
 TEST_P(LeftBehind, NotOutsideABoxPressedBesideItsEdge) {
-  // Outside: on the face x = 30 mm, along the edge, with the hand in the plane of the top face.
+  // The proxy moves outside the box on the face x = 30 mm, along the edge, with the hand in the
+  // plane of the top face.
   Drive drive(sceneOfSolid(box(Vec3(0.0), mm(60, 40, 20))));
   const double z = 0.010 - std::fabs(GetParam());
   (void)drive.to({0.033, -0.010, z});
@@ -76,13 +77,14 @@ std::string asideName(const ::testing::TestParamInfo<double>& info) {
   return "case" + std::to_string(info.index);
 }
 
-// In the plane, and beyond or before it by an encoder's rounding.
+// The hand is in the plane, or beyond or before it by an encoder's rounding.
 INSTANTIATE_TEST_SUITE_P(Aside, LeftBehind,
                          ::testing::Values(0.0, 5e-11, -5e-11, 1e-13, -1e-13, 1e-16, -1e-16, 1e-9),
                          asideName);
 
 TEST(LeftBehindInACorner, NotWhereTwoPlanesAreMet) {
-  // In the planes of two faces at once, into the corner and back out along the third axis.
+  // The hand is in the planes of two faces at once; it goes into the corner and back out along the
+  // third axis.
   Drive drive(sceneOfSolid(box(Vec3(0.0), mm(60, 40, 20)), true));
   (void)drive.to(Vec3(0.0));
   (void)drive.walk({0.028, 0.020, 0.010});

@@ -218,7 +218,7 @@ TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
     Drive hand(scene);
     (void)hand.to({x, 0, 0.001});
     EXPECT_NEAR(gives_way(hand, x), 3.0, 2e-3) << x;
-    // Out again, and in a second time beside the middle of the hole: the hole keeps the force of
+    // The hand goes out, and in again beside the middle of the hole: the hole keeps the force of
     // the place where it was made.
     (void)hand.walk({x, 0, 8e-3});
     ASSERT_EQ(hand.region(), "outside");
@@ -232,7 +232,7 @@ TEST(MaterialMaps, AHoleReopensAtTheForceOfThePlaceWhereItWasMade) {
 TEST(MaterialMaps, TheMediumFlowsAsTheMapOfThePlaceSays) {
   Material stream = named("stream");
   stream.viscosity = 3.0;
-  // In two directions at once, with negative values too; the third component is zero.
+  // The flow has components along two axes, with negative values too; the third component is zero.
   stream.flow = {linearMap(0.1, {20, 0, 0}, {-1.0, 1.0}), linearMap(-0.05, {0, 0, 10}, {-2.0, 2.0}),
                  0.0};
   for (const RendererKind kind : {RendererKind::kConstraint, RendererKind::kPaper}) {

@@ -59,7 +59,7 @@ TEST(MixedCorner, AHertzianWallDoesToo) {
 }
 
 TEST(MixedCorner, EachOfThreeIsItselfWhereTheProxyCameAlongOneInATick) {
-  // From each of the walls to the corner of all three, in one tick.
+  // The hand goes from each of the walls to the corner of all three, in one tick.
   const std::string text = cornerText("stiffness: 3000 N/m", "stiffness: 500 N/m") +
                            "  - {name: back, inside: {half_space: {point: [0, 0, 0], normal: "
                            "[0, 1, 0]}}, wall: wall}\n";
@@ -74,8 +74,8 @@ TEST(MixedCorner, EachOfThreeIsItselfWhereTheProxyCameAlongOneInATick) {
   }
 }
 
-/// Inside a cone, whose wall meets that of a cylinder in a shallow valley; `third` is a further
-/// layer.
+/// The probe starts inside a cone whose wall meets that of a cylinder in a shallow valley; `third`
+/// is a further layer.
 ScenePtr valley(const char* third) {
   return sceneOf(std::string(R"(
 palpate: 1

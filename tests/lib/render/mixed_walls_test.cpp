@@ -85,7 +85,7 @@ layers:
   - {name: b, inside: second, wall: right}
 )";
   if (!hollow) return text;
-  // From inside the part that two balls share: beyond each wall there is another layer.
+  // The probe starts in the part that the two balls share: beyond each wall there is another layer.
   return text + R"(  - {name: lens, inside: {intersection: [first, second]}, wall: left}
 walls:
   - {between: [lens, a], wall: left}
@@ -289,8 +289,8 @@ TEST(MixedWalls, OneWallFarFromTheOthersFollowsItsOwnLaw) {
 }
 
 TEST(MixedWalls, AreNowhereStifferThanTheStop) {
-  // At most 1.05 times the stiffer wall; so the force has no jump, however the hand goes through
-  // the groove.
+  // The stiffness is at most 1.05 times that of the stiffer wall; so the force has no jump, however
+  // the hand goes through the groove.
   Drive hand(sceneOf(grooveText(60, "stiffness: 1000 N/m", "stiffness: 3000 N/m")));
   (void)hand.to(mm(0, 0, 10));
   double most = 0.0;

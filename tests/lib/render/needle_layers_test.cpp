@@ -126,7 +126,7 @@ class Machine {
     for (std::size_t i = 0; i < tissues_.size(); ++i) {
       const Tissue& t = tissues_[i];
       const double bottom = i + 1 < tissues_.size() ? tissues_[i + 1].top : kInfinity;
-      // On the wall by which it came in, the tip still counts as inside, by a tiny length.
+      // A tip on the wall by which it came in still counts as inside, by a tiny length.
       const double length = static_cast<int>(i) < region_
                                 ? std::max(std::clamp(tip_, t.top, bottom) - t.top, 1e-15)
                                 : 0.0;
@@ -183,7 +183,7 @@ std::vector<Tissue> randomTissues(Random& random) {
   for (int i = 0; i < count; ++i) {
     Tissue t;
     t.top = top;
-    // From a film of 20 um, which a hand crosses within a tick, to centimeters.
+    // Thicknesses range from a film of 20 um, which a hand crosses within a tick, to centimeters.
     top += 2e-5 * std::pow(1000.0, random.uniform(0.0, 1.0));
     const double which = random.uniform(0.0, 1.0);
     t.kind = which < 0.7 ? Kind::kPierced : which < 0.85 ? Kind::kOpen : Kind::kAbsent;
@@ -316,8 +316,8 @@ TEST(NeedleLayers, OneAfterTheOtherWithinATickAsTheMachineSays) {
   EXPECT_GT(many, runs * 5);
 }
 
-// In fine steps, in and out at random: the hand never gets back more than it gave, beyond counted
-// sources.
+// The hand moves in fine steps, in and out at random: it never gets back more than it gave, beyond
+// counted sources.
 TEST(NeedleLayers, NoWayInAndOutGivesEnergyBeyondCountedSources) {
   const bool slow = std::getenv("PALPATE_SLOW_TESTS") != nullptr;
   const int runs = slow ? 400 : 25;

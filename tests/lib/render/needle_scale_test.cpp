@@ -35,8 +35,8 @@ TEST(NeedleScale, InMicrometersItFeelsWhatItFeelsInMillimeters) {
   const ScenePtr small = block("um", 1e-3);
   const auto one = makeRenderer(large);
   const auto other = makeRenderer(small);
-  // In and out; once more beside that by less than the needle's width, where the way is cut
-  // already; by more than that, where it is not; and at an angle.
+  // The needle goes in and out; then once more beside that, by less than its width, where the
+  // tissue is cut already; then by more, where it is not; and then at an angle.
   const std::vector<Vec3> corners = {mm(0, 0, 3),      mm(0, 0, -3),  mm(0, 0, 3),  mm(0.3, 0, 3),
                                      mm(0.3, 0, -3),   mm(0.3, 0, 3), mm(2, 0, 3),  mm(2, 0, -3.5),
                                      mm(3, 0.5, -3.5), mm(3, 0.5, 3), mm(-4, 0, 3), mm(-5, 1, -5),

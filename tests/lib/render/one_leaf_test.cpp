@@ -48,8 +48,8 @@ TEST(OneLeaf, TwoBallsAndTheCreaseBetweenThem) {
   Drive drive(sceneOfLeaf(balls, 0.025));
   (void)drive.to(mm(-15, 40, 0));
   (void)drive.walk(mm(-15, 22, 0));
-  // Along the top, 3 mm deep, over the crease: the proxy is always outside both, and the wall is
-  // pressed.
+  // The hand goes along the top, 3 mm deep, over the crease: the proxy is always outside both
+  // balls, and the wall is pressed.
   for (double x = -15.0; x <= 15.0; x += 0.25) {
     const TickResult& out = drive.to(mm(x, 17, 0));
     ASSERT_GE(balls->value(out.proxy), -1e-8) << x;

@@ -193,7 +193,7 @@ class Tube : public Figured {
     if (state == layer + 1) {  // out of its own filling
       return is_due && (face != 4 || layer == 2);
     }
-    // Into another filling, through the port that joins the two.
+    // Here the probe would go into another filling, through the port that joins the two.
     const int before = face == 4 ? -1 : face - 1;
     return is_due && face == layer + 1 && state == before;
   }
@@ -423,7 +423,7 @@ TEST(PaperFigure27, TheTubesPortsArePassedInTheirOrderAndTheProbeIsOutBehindIt) 
   EXPECT_EQ(drive.events(), "port 1 port 2 port 3 port 4");
   EXPECT_EQ(drive.region(), "outside");
   EXPECT_EQ(drive.last().force, Vec3(0.0));
-  // From behind it is shut by steel, at the plane of port 4.
+  // From behind, the tube is shut by steel, at the plane of port 4.
   (void)drive.walk(mm(44, 0, 0));
   EXPECT_EQ(drive.events(), "");
   EXPECT_TRUE(isNear(drive.last().force, {1.5, 0, 0}, 3e-3));

@@ -42,7 +42,7 @@ const Vec3 kB = mm(-20, 0, 0);
 const Vec3 kC = mm(20, -20, 0);
 constexpr double kStep = 5e-3;
 
-/// To b and c through the middles of the walls.
+/// Goes to b, c and back to a, through the middles of the walls.
 void lap(Drive& drive) {
   (void)drive.walk(mm(-20, 20, 0), kStep);
   (void)drive.walk(mm(-20, -20, 0), kStep);
@@ -110,8 +110,8 @@ TEST_P(PortMemory, AtLeastSoManyTimes) {
 }
 
 TEST_P(PortMemory, AnAbsentWallToOutsideClearsWhatWasPassed) {
-  // Into a by its port, and out where b has no wall: after that, the port that requires the first
-  // one is shut, from outside too.
+  // The probe goes into a by its port, and out where b has no wall: after that, the port that
+  // requires the first one is shut, from outside too.
   for (const bool keep : {false, true}) {
     Drive drive(sceneOf(ring(R"(
   - {name: ab, between: [a, b]}

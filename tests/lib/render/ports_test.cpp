@@ -186,7 +186,7 @@ walls:
   EXPECT_EQ(drive.region(), "tea");
   (void)drive.walk(mm(0, 0, 30));
   EXPECT_EQ(drive.region(), "outside");
-  // From outside: the outer glass, and the flat ring on the rim.
+  // From outside, the outer glass and the flat ring on the rim are felt.
   (void)drive.walk(mm(60, 0, 30));
   (void)drive.walk(mm(60, 0, 0));
   EXPECT_TRUE(isNear(drive.walk(mm(41, 0, 0)).force, Vec3(1, 0, 0), 1e-9));
@@ -208,8 +208,8 @@ layers: [{name: body, inside: {sphere: {center: [0, 0, 0], radius: 40}}, wall: s
 ports: [{name: cut, between: [outside, body], opens_at: 2 N, back: 0.5 N}]
 )";
 
-/// Into a box through the absent wall at x = 0 and out through a port at x = 10 mm, in steps that
-/// end near both.
+/// The probe goes into a box through the absent wall at x = 0 and out through a port at x = 10 mm,
+/// in steps that end near both.
 TEST_P(BothRenderers, APassingHasItsPlaceOnTheWallAndNotAtTheHand) {
   Drive drive(sceneOf(R"(
 palpate: 1
@@ -249,7 +249,7 @@ TEST(OpeningForce, OpensAtKTimesDepthAndNotBefore) {
     EXPECT_EQ(drive.region(), enough ? "body" : "outside");
     if (enough) {
       EXPECT_EQ(drive.last().force, Vec3(0.0));
-      // On the way back it needs its own force.
+      // On the way back the port needs a force of its own.
       (void)drive.walk(Vec3(0, 0, 0.04 + 0.49e-3), 0.05e-3);
       EXPECT_EQ(drive.region(), "body");
       EXPECT_NEAR(drive.last().force.z, -0.49, 1e-9);
@@ -285,8 +285,8 @@ TEST(OpeningForce, AFastStrokeAlongTheSkinDoesNotOpenWhatItNeverPresses) {
 }
 
 TEST(OpeningForce, AnObliqueLandingDoesNotOpenWhatItNeverPresses) {
-  // In one tick from outside to 1.5 mm below the top, on a path that meets the ball far down its
-  // side.
+  // The hand jumps in one tick from outside to 1.5 mm below the top, on a path that meets the ball
+  // far down its side.
   Drive drive(sceneOf(kSkin));
   (void)drive.to(mm(45, 0, 10));
   (void)drive.to(mm(0, 0, 38.5));

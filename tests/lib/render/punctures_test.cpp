@@ -143,7 +143,8 @@ TEST(Puncture, AnOpenHoleIsAnOpeningFromEverySideAndSpeed) {
 }
 
 TEST(Puncture, TwoPortsInOneWallTheHoleOfTheHarderOneCounts) {
-  // In through `a` with 2 N, whose hole opens easily; on the way back, `b` alone would be weaker.
+  // The hand goes in through `cut` with 2 N, whose hole opens easily; on the way back, `b` alone
+  // would be weaker.
   Drive drive(
       sceneOf(skin("opens_at: 2 N, back: 1.5 N, hole: {radius: 2, reopens_at: 0.1 N}},\n"
                    "  {name: b, between: [outside, flesh], opens_at: 3 N, back: 1 N")));

@@ -251,7 +251,7 @@ TEST(RandomParts, GiveNoEnergy) {
   for (std::uint64_t number = scenes.first; number < scenes.first + scenes.count; ++number) {
     const Parts parts(number);
     Random random(number + 77);
-    // Around a place on the surface of the last part.
+    // The loop goes around a place on the surface of the last part.
     const Field& field = *parts.scene()->regions().back().field;
     Vec3 at = 8e-3 * random.direction();
     for (int i = 0; i < 60; ++i) {

@@ -15,7 +15,7 @@
 namespace palpate::test {
 namespace {
 
-/// In and out of the scene's bounds with rests, jumps and slow stretches.
+/// A hand's path in and out of the scene's bounds, with rests, jumps and slow stretches.
 std::vector<HipState> wander(const Scene& scene, std::uint64_t seed, int ticks) {
   Box3 box = scene.bounds();
   if (!box.isBounded()) box = {Vec3(-0.04), Vec3(0.04)};

@@ -132,8 +132,8 @@ std::vector<Vec3> everything() {
   Vec3 drift(0.0);
   for (int i = 0; i < 20000; ++i) {
     drift = 0.95 * drift + 0.1 * random.direction();
-    // Along the ball, up to half a millimeter inside or outside it, and now and then somewhere
-    // else.
+    // The hand moves along the ball, up to a millimeter inside or outside it, and now and then
+    // somewhere else.
     p = glm::normalize(p + 2e-3 * drift) * (0.04 + 0.001 * std::sin(0.01 * i));
     path.push_back(i % 100 > 97 ? random.in({Vec3(-0.06), Vec3(0.06)}) : p);
   }

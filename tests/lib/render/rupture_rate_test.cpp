@@ -48,10 +48,10 @@ TEST(RuptureRate, FollowsItsCurveBothWays) {
       renderer->reset();
       EXPECT_NEAR(ruptureOf(*renderer, x, 1e-4, -0.01, speed), share * 2.0, kStiffness * 1.1e-6)
           << rate.text << " at " << speed;
-      // In its hole the speed does not matter, since nothing is torn.
+      // In the hole just made the speed does not matter, since nothing is torn.
       (void)renderer->update({Vec3(x, 0.0, -1e-4)});
       EXPECT_NEAR(ruptureOf(*renderer, x, -1e-4, 0.01, speed), 0.5, kStiffness * 1.1e-6);
-      // Beside the hole there is a wall on the way back.
+      // Beside the hole the wall must be torn on the way back too.
       (void)renderer->update({Vec3(x, 0.0, 1e-4)});
       EXPECT_NEAR(ruptureOf(*renderer, x, 1e-4, -0.01, speed), 0.5, kStiffness * 1.1e-6);
       (void)renderer->update({Vec3(x, 0.0, -1e-4)});

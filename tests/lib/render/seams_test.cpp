@@ -136,7 +136,7 @@ TEST(Seams, GiveNoEnergy) {
   for (const Place& place : kPlaces) {
     ++turn;
     for (std::size_t k = 0; k < std::size(kPairs); ++k) {
-      // In turn one pair of walls for each place, unless there is time for all.
+      // Each place takes one pair of walls, in turn, unless there is time for all.
       if (!slow && k != turn % std::size(kPairs)) continue;
       const Pair& pair = kPairs[k];
       const ScenePtr scene = sceneOf(place, pair.soft, pair.stiff);
@@ -157,7 +157,7 @@ TEST(Seams, GiveNoEnergy) {
 }
 
 TEST(Seams, AreCrossedUnderAPressWithoutGainOrStep) {
-  // Down, across the seam, up, and back above the wall.
+  // The hand goes down, across the seam, up, and back above the wall.
   const ScenePtr scene = sceneOf(kPlaces[0], kPairs[0].soft, kPairs[0].stiff);
   const auto renderer = makeRenderer(scene);
   const Vec3 corners[] = {mm(-3, 1, 0.5), mm(-3, 1, -1), mm(3, 1, -1), mm(3, 1, 0.5),
@@ -242,8 +242,8 @@ TEST(Seams, FrictionOnlyTakesThere) {
 }
 
 TEST(Seams, AWallThatGivesWayBesideOneGivesBackNoMoreThanWasStored) {
-  // In through the soft half, which opens at 1 N, and out elsewhere; the whole way gives at most
-  // what is counted as a source.
+  // The hand may go in through the soft half, which opens at 1 N, and out elsewhere; the whole way
+  // gives at most what is counted as a source.
   const ScenePtr scene = test::sceneOf(R"(
 palpate: 1
 length: mm

@@ -1,4 +1,5 @@
-// Where the proxy begins if no leaf's field leads to its region, as with a grid outside its band.
+// The proxy's starting place if no leaf's field leads to its region, as with a grid outside its
+// band.
 
 #include <gtest/gtest.h>
 

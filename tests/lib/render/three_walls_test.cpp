@@ -47,7 +47,8 @@ Held press(Drive& drive, const Vec3& from, const Vec3& goal, const Vec3& corner,
   return out;
 }
 
-/// At rest to 1e-6 of the depth, plus the rounding of walls at a billionth of 20 mm.
+/// Expects that at rest the proxy is right to 1e-6 of the depth, and the force to 1e-6 of K times
+/// the depth.
 void expectSteady(const Held& held, double depth) {
   EXPECT_LE(held.worst_proxy, 1e-6 * depth);
   EXPECT_LE(held.worst_force, 1e-6 * kDefaultK * depth);
@@ -190,7 +191,7 @@ Corner randomCorner(Random& random, int hollow) {
     parts.push_back(i < hollow ? sphere(radius * n, radius)
                                : complement(sphere(-radius * n, radius)));
   }
-  // Inside a larger ball, so that the solid has bounds.
+  // The solid is inside a larger ball, so that it has bounds.
   parts.push_back(sphere(Vec3(0.0), 0.2));
   out.solid = intersect(parts);
   return out;

@@ -39,7 +39,8 @@ materials: {m: {stiffness: 300 N/m, curve: {exponent: 2, reference: 2 mm, stiffe
 layers: [{name: ball, inside: {sphere: {center: [0, 0, 0], radius: 30}}, wall: m}]
 )"));
   EnergyMeter meter;
-  // In, sideways at another depth, out, and back through the air: a closed path.
+  // The hand goes in, sideways to another depth, and out. The way back through the air would cost
+  // nothing, so the path counts as closed.
   double lowest = 0.0;
   const auto go = [&](double r0, double r1, double a0, double a1) {
     constexpr int kTicks = 4000;

@@ -102,8 +102,9 @@ TEST(TangentTracking, LagsOnASphereAsDerived) {
 }
 
 TEST(TangentTracking, BuzzesInAHollowThatIsPressedDeeperThanItsRadius) {
-  // From inside a ball, d beyond its wall: a -> a - atan((1 + kd) sin a), so for kd above 1 it
-  // oscillates between +a and -a with 2 cos a / cos 2a = 1 + kd.
+  // The hand is pressed from inside a ball, d beyond its wall. A tick changes the proxy's angle a
+  // to a - atan((1 + kd) sin a), so for kd above 1 it oscillates between +a and -a with 2 cos a /
+  // cos 2a = 1 + kd.
   constexpr double kRadius = 0.02;
   const ScenePtr scene =
       compile(parseScene("palpate: 1\nlength: mm\nmaterials:\n  wall: {stiffness: 1000 "
@@ -236,8 +237,9 @@ TEST(ForceShading, AStrokeAcrossAFacetGivesEnergyAndTheWayBackTakesIt) {
 }
 
 TEST(SlowPlane, StepsByTheAngleThatTheHandWentInAPeriod) {
-  // On a ball at depth d, phi = v T_s / (R - d) between planes: the depth changes from d' = R - (R
-  // - d) cos(phi') in the old plane, a tick before the new one comes, to d in the new one.
+  // On a ball at depth d the hand turns by phi = v T_s / (R - d) from plane to plane. The depth
+  // changes from d' = R - (R - d) cos(phi') in the old plane, a tick before the new one comes, to d
+  // in the new one.
   constexpr double kRadius = 0.02;
   constexpr double kDepth = 1e-3;
   const ScenePtr scene = sceneOf(ball(20.0));

@@ -45,7 +45,7 @@ Material material(const std::string& name, double stiffness) {
 
 FieldPtr ball(double x, double radius) { return sphere(Vec3(x, 0, 0), radius); }
 
-/// Outside, a shell, a core in it, and a far ball that touches neither.
+/// A scene with a shell, a core in it, and a far ball that touches neither.
 SceneDescription onion() {
   SceneDescription out;
   out.materials = {material("bone", 2000), material("air", 0)};

@@ -36,7 +36,7 @@ TEST(HiddenFaces, AreExplained) {
   for (const Case& c :
        {Case{"{smooth_intersection: {fields: [bowl, brim], radius: 3}}", "brim",
              "smooth_intersection"},
-        // Through a name that was defined before.
+        // These shapes refer to a name that was defined before.
         Case{"{scale: {field: cup, factor: 2}}", "brim", "scale"},
         Case{"{offset: {field: {complement: {complement: cup}}, distance: 1}}", "brim", "offset"},
         Case{"{smooth_union: {fields: [cup, bowl], radius: 3}}", "cup", "smooth_union"}}) {

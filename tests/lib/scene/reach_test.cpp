@@ -52,7 +52,8 @@ TEST(Reach, WhatIsTakenBackOnTheWayDoesNotCount) {
 }
 
 TEST(Reach, TwoThatExcludeEachOtherAreNotBothPassed) {
-  // From a through x to b or through y to c, both one-way; d opens from b and c, after x and y.
+  // Ways lead from a through x to b, or through y to c, both one-way; d opens from b and c, after x
+  // and y.
   ReachTable table;
   table.regions = 5;
   table.ways = {
@@ -78,8 +79,8 @@ TEST(Reach, OutsideClearsWhatWasPassed) {
 }
 
 TEST(Reach, AnAbsentWallBackTakesAPassingBack) {
-  // From a to b by a port, and back where there is no wall: the room that requires the port opens
-  // only from a.
+  // A way leads from a to b by a port, and back where there is no wall: the room that requires the
+  // port opens only from a.
   ReachTable table = rooms();
   table.ways = {{0, 1, 0, true}, {1, 2, 1, true}, {2, 1, -1, false}, {1, 3, 3, true}};
   table.after[3] = {1};

@@ -81,7 +81,7 @@ TEST(SceneFile, ContainerOfTheDesign) {
   EXPECT_EQ(liquid.wall.material, "glass");
   EXPECT_FALSE(liquid.wall.absent);
   EXPECT_EQ(liquid.place.line, 10);
-  // Inside the bowl and below the brim, in meters.
+  // The liquid is inside the bowl and below the brim; values are in meters.
   const FieldPtr inside = liquid.inside->get();
   EXPECT_NEAR(inside->value(Vec3(0.0)), -0.015, 1e-15);
   EXPECT_NEAR(inside->value(Vec3(0.0, 0.0, -0.05)), 0.01, 1e-15);
