@@ -13,6 +13,7 @@ install_packages "${build_packages[@]}"
 use_ccache
 
 say "Building the page of palpate view (build/page)"
+install_npm
 build_page
 
 say "Building palpate (build/release)"

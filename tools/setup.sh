@@ -80,6 +80,10 @@ install_packages() { # NAME...: installs what is missing, as root or through sud
   fi
 }
 
+install_npm() { # from Debian; not beside a Node from elsewhere, which excludes Debian's npm
+  command -v npm > /dev/null || command -v node > /dev/null || (install_packages npm) || true
+}
+
 build_page() { # builds the page of `palpate view` if npm is installed; without it, the command says what is missing
   if ! command -v npm > /dev/null; then
     echo "There is no npm here, so the command gets no page for \`palpate view\`."

@@ -179,8 +179,8 @@ void FeltWalls::findGroups(const ContactSet& contact, double reach) noexcept {
     if (!holds(contact, id)) is_alone = false;
   });
   if (!is_alone || contact.count > 1) {
-    // With walls of one kind the hand cannot be farther from the proxy than it is: a seam may
-    // matter up to this distance.
+    // The hand is `reach` from the proxy, and at most as far from where walls of one kind would
+    // hold the proxy: a seam between the two places is within twice that distance.
     walker_.forWithin(2.0 * reach, [&](LeafId id) { seams_.add(id); });
   }
   for (const WallContact& each : contact.walls()) add({each.leaf, each.facet, each.held});

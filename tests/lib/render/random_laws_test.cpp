@@ -148,9 +148,10 @@ TEST(RandomParts, EachWallAlonePushesByItsOwnLaw) {
       const TickResult r = renderer->update({p, Vec3(0.0), 1e-3});
       const Vec3 press = r.proxy - p;
       const double depth = glm::length(press);
-      // For any walls: the stiffness is at most that of the stop, 1.05 times the stiffest; and
-      // perpendicular to that, 3/8 of a difference across a seam, times R / (R - depth) where the
-      // wall bulges, as the proxy moves farther than the hand by that factor. R is at least 6 mm.
+      // For any walls: along the press at most the stiffness of the stop, 1.05 times the stiffest.
+      // Across the press at most 3/8 of a difference in stiffness across a seam, times R / (R -
+      // depth) where the wall bulges: the proxy moves farther than the hand by that factor. R is at
+      // least 6 mm.
       if (depth < 2e-3) {
         ASSERT_LE(glm::length(r.force), 1.2 * stiffest * depth + 1e-9);
       }
