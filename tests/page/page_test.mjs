@@ -295,6 +295,20 @@ const tests = {
     }
     await page.keyboard.press("ArrowLeft");
     await page.waitForFunction(() => window.palpatePage.last.row === 2);
+    // The hand is the record's: keys turn the view, and a still picture is not drawn again.
+    assert.equal(await page.locator("#steers").textContent(), "This page plays the record.");
+    assert.ok(await page.locator(".keys.leading").isHidden());
+    await settle(page);
+    const drawn = () => page.evaluate(() => window.palpatePage.space.drawn);
+    const still = await drawn();
+    await settle(page, 10);
+    assert.equal(await drawn(), still);
+    const told = await page.evaluate(() => window.palpatePage.told);
+    await page.locator("#space").focus();
+    await page.keyboard.down("ArrowLeft");
+    await page.waitForFunction((before) => window.palpatePage.space.drawn > before, still);
+    await page.keyboard.up("ArrowLeft");
+    assert.deepEqual(await page.evaluate(() => window.palpatePage.told), told);
     await page.locator("#play").click();
     await page.waitForFunction(() => window.palpatePage.last.tick.region === 1 && window.palpatePage.last.tick.contact);
     await picture(page, "replay");

@@ -94,6 +94,7 @@ class Page {
       this.words = words;
       this.start = words.start;
       if (isFirst) this.told = [...words.start];
+      document.body.classList.toggle("led", !this.leads);
       document.title = `${words.file} - Palpate`;
       byId("title").textContent = words.file;
       byId("device").textContent =
@@ -181,6 +182,10 @@ class Page {
   private end(): void {
     this.isOver = true;
     this.notice("palpate view has ended. What is shown is the last that it said; start it again for a new page.");
+  }
+
+  get leads(): boolean {
+    return this.words?.mode !== "replay" && this.words?.mode !== "device";
   }
 
   get over(): boolean {

@@ -11,6 +11,8 @@ const stickRest = 0.15; // share of a stick's travel that is ignored
 export interface Steered {
   told: Vector;
   start: Vector;
+  /** False: a record or a device moves the hand, and all input moves the view. */
+  readonly leads: boolean;
   /** The hand's place has changed. */
   changed(): void;
 }
@@ -50,7 +52,7 @@ export class Steering {
     const x = axis("ArrowLeft", "ArrowRight");
     const y = axis("ArrowDown", "ArrowUp");
     const z = axis("PageUp", "PageDown");
-    if (this.held.has("Shift")) {
+    if (this.held.has("Shift") || !this.steered.leads) {
       this.space.turn(turnStep * dt * x, turnStep * dt * y);
       this.go(0, 0, keyStep * dt * z);
     } else {
@@ -68,7 +70,7 @@ export class Steering {
   }
 
   private go(right: number, upward: number, away: number): void {
-    if (right === 0 && upward === 0 && away === 0) return;
+    if (!this.steered.leads || (right === 0 && upward === 0 && away === 0)) return;
     this.steered.told = this.space.moved(this.steered.told, right, upward, away);
     this.steered.changed();
   }
@@ -78,7 +80,7 @@ export class Steering {
     const x = (event.clientX - this.drag.x) / this.canvas.clientHeight;
     const y = (event.clientY - this.drag.y) / this.canvas.clientHeight;
     this.drag = { ...this.drag, x: event.clientX, y: event.clientY };
-    if (this.drag.button === 0) {
+    if (this.drag.button === 0 && this.steered.leads) {
       this.go(x, -y, 0);
     } else {
       this.space.turn(-4 * x, 4 * y);
@@ -87,7 +89,7 @@ export class Steering {
 
   private roll(event: WheelEvent): void {
     event.preventDefault();
-    if (event.ctrlKey) {
+    if (event.ctrlKey || !this.steered.leads) {
       this.space.zoom(Math.exp(0.0015 * event.deltaY));
     } else {
       this.go(0, 0, -wheelStep * event.deltaY);
@@ -98,7 +100,7 @@ export class Steering {
     const moves = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "PageUp", "PageDown", "Shift"];
     if (moves.includes(event.key)) {
       this.held.add(event.key);
-    } else if (event.key === "Home") {
+    } else if (event.key === "Home" && this.steered.leads) {
       this.steered.told = [...this.steered.start];
       this.steered.changed();
     } else if (event.key === "+" || event.key === "-") {
