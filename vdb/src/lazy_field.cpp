@@ -114,6 +114,14 @@ class Maker {
     }
   }
 
+  /// Whether the grid was kept before. Nothing is made.
+  [[nodiscard]] bool isKept() const {
+    if (cache_.folder().empty() && bundle_.folder().empty()) return false;
+    const GridContent content = source_.content({});
+    const std::string key = content.grid.text();
+    return content.files.isKnown() && (bundle_.mayHave(key) || cache_.mayHave(key));
+  }
+
  private:
   [[nodiscard]] bool find(const std::string& key, Made& made) const {
     if (key.empty()) return false;
@@ -197,7 +205,12 @@ class Maker {
 
 FieldSourcePtr lazyField(const CommonPtr& common, GridSource source) {
   std::string summary = source.summary;
+  const std::string what = source.what;
+  const bool may_be_kept = source.content != nullptr;
   const auto maker = std::make_shared<const Maker>(common, std::move(source));
+  if (may_be_kept && common->bundle.on_source) {
+    common->bundle.on_source(what, [maker] { return maker->isKept(); });
+  }
   return std::make_shared<FieldSource>(
       std::move(summary),
       [maker](const Box3& within, const Progress& progress) {

@@ -130,6 +130,11 @@ bool GridCache::keep(const std::string& key, const LevelSet& grid) const {
   return false;
 }
 
+bool GridCache::mayHave(const std::string& key) const {
+  std::error_code failure;
+  return !folder_.empty() && fs::is_regular_file(pathOf(key, kGrid), failure) && isUsable();
+}
+
 std::optional<std::string> GridCache::findText(const std::string& key) const {
   if (folder_.empty()) return {};
   const std::string path = pathOf(key, kText);

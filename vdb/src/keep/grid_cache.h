@@ -35,6 +35,9 @@ class GridCache {
   /// Returns whether it was kept.
   bool keep(const std::string& key, const LevelSet& grid) const;
 
+  /// Whether a grid is there that find() may take: its seal and certificate are not looked at.
+  [[nodiscard]] bool mayHave(const std::string& key) const;
+
   /// A short text about a file that takes long to read.
   [[nodiscard]] std::optional<std::string> findText(const std::string& key) const;
   bool keepText(const std::string& key, const std::string& text) const;

@@ -1,6 +1,7 @@
 #pragma once
 /// Grids that scenes keep for the next run, and carry along in bundles.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,13 @@ struct BundleOptions {
   /// Empty: nowhere.
   std::string folder = {};
   bool fills = false;  ///< all grids that may be kept go there, too
+  /// Called with the name of each grid that may be kept, while the scene is read, and with a
+  /// function that says, once all of it is read, whether the grid was kept before.
+  std::function<void(const std::string& what, std::function<bool()> is_kept)> on_source = {};
 };
 
-/// registerKinds() for a scene in a bundle, or for one that a bundle is made of.
+/// registerKinds() for a scene that is in a bundle, or that one is made of, or that is asked what
+/// of it is kept.
 PALPATE_EXPORT void registerKinds(SceneRegistry& registry, const RegisterOptions& options,
                                   const BundleOptions& bundle);
 
