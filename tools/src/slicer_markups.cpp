@@ -144,7 +144,7 @@ std::string markupsText(const std::vector<Markup>& markups) {
   for (const Markup& markup : markups) {
     Json points = Json::array();
     for (std::size_t n = 0; n < markup.points.size(); ++n) {
-      const Vec3 lps = 1e3 * kTurn * markup.points[n].position;
+      const Vec3 lps = 1e3 * kTurn * markup.points[n].position + 0.0;  // -0 becomes 0
       points.push_back({{"id", std::to_string(n + 1)},
                         {"label", markup.points[n].label},
                         {"position", {lps.x, lps.y, lps.z}},

@@ -8,6 +8,7 @@
 #include "import/burr_hole.h"
 #include "import/import_report.h"
 #include "import/imported_scene.h"
+#include "import/kept_layers.h"
 #include "import/models.h"
 #include "import/needle_way.h"
 #include "input_kind.h"
@@ -358,20 +359,21 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
                    formatNumber(kClearance * 1e3) + " mm of what it must not touch");
     }
   }
+  const std::string output = options.output;
+  std::vector<std::string> labels = {vdb::fileName(changed_labels)};
+  if (!is_relabeled) {
+    labels.clear();
+    for (const std::string& file : options.scans) labels.push_back(seenFrom(output, file));
+  }
+  // The table of names for models has numbers of files, not of labels.
+  const std::string names = scan.is_relabeled ? "" : options.names;
+  const SceneFiles seen = {labels, seenFrom(output, names),
+                           seenFrom(output, options.skin ? options.image : options.body),
+                           seenFrom(output, options.image)};
+  const std::string text = writeScene(options, scan, tissues, seen);
   std::vector<std::string> written;
   if (is_written) {
-    const std::string output = options.output;
-    std::vector<std::string> labels = {vdb::fileName(changed_labels)};
-    if (!is_relabeled) {
-      labels.clear();
-      for (const std::string& file : options.scans) labels.push_back(seenFrom(output, file));
-    }
-    // The table of names for models has numbers of files, not of labels.
-    const std::string names = scan.is_relabeled ? "" : options.names;
-    const SceneFiles seen = {labels, seenFrom(output, names),
-                             seenFrom(output, options.skin ? options.image : options.body),
-                             seenFrom(output, options.image)};
-    files.write(output, writeScene(options, scan, tissues, seen));
+    files.write(output, text);
     written.push_back(output);
     if (is_relabeled) {
       report(console.progress(), "write labels", -1.0);
@@ -385,7 +387,8 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
     checkStop();
     files.commit();
   }
-  return importReport(options, scan, tissues, way ? &*way : nullptr, written);
+  return importReport(options, scan, tissues, way ? &*way : nullptr, written,
+                      keptLayers(text, output));
 }
 
 }  // namespace palpate::tools

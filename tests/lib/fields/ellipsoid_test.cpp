@@ -139,5 +139,16 @@ TEST(Ellipsoid, IsContinuousAcrossItsMedialDisc) {
   }
 }
 
+TEST(Ellipsoid, IsAPointSeenFromVeryFarAway) {
+  const FieldPtr field = ellipsoid(Vec3(0.0), Vec3(0.03, 0.02, 0.01));
+  for (const double away : {1e10, 1e30, 1e160, 1e300}) {
+    const FieldJet jet = field->jet(Vec3(away, 0.0, 0.0));
+    // The curvature of a distance is 1 over the distance, across the direction to the point.
+    EXPECT_NEAR(jet.hessian[0][0] * away, 0.0, 1e-9) << away;
+    EXPECT_NEAR(jet.hessian[1][1] * away, 1.0, 1e-9) << away;
+    EXPECT_NEAR(jet.hessian[2][2] * away, 1.0, 1e-9) << away;
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test

@@ -28,8 +28,8 @@ std::string labelList(const std::vector<int>& labels) {
 class ImportReport {
  public:
   ImportReport(const ImportOptions& options, const ImportedScan& scan, const TissueTable& tissues,
-               const NeedleWay* way)
-      : options_(options), scan_(scan), tissues_(tissues), way_(way) {}
+               const NeedleWay* way, const std::set<std::string>& kept)
+      : options_(options), scan_(scan), tissues_(tissues), way_(way), kept_(kept) {}
 
   Report make(const std::vector<std::string>& written) {
     const vdb::Image& image = scan_.labels;
@@ -294,36 +294,46 @@ class ImportReport {
   }
 
   void cost() {
-    GridEstimate sum;
-    const auto add = [&](double area, double volume) {
-      const GridEstimate one = estimateGrid(area, volume, scan_.voxel);
-      sum.active_voxels += one.active_voxels;
-      sum.seconds += one.seconds;
+    double voxels = 0.0;
+    double voxels_to_make = 0.0;
+    std::size_t kept = 0;
+    const auto add = [&](std::size_t region, double area, double volume) {
+      const double active = estimateVoxels(area, volume, scan_.voxel);
+      const bool is_kept = kept_.contains(scan_.nameOf(region));
+      voxels += active;
+      voxels_to_make += is_kept ? 0.0 : active;
+      kept += is_kept ? 1U : 0U;
     };
     double body = scan_.survey.regions[scan_.survey.gap()].volume;
     for (std::size_t r = 0; r < scan_.plan.regions.size(); ++r) {
       const vdb::LabelSurvey::Region& region = scan_.survey.regions[r];
-      add(region.area, region.volume);
+      add(r, region.area, region.volume);
       body += region.volume;
     }
     // The body's surface is that of the outside, including its area on the image's border.
-    if (scan_.has_body) add(scan_.survey.regions[scan_.survey.outside()].area, body);
-    const double memory = estimateMemory(scan_, tissues_, sum.active_voxels);
-    report_.json["estimate"] = {{"active_voxels", std::llround(sum.active_voxels)},
-                                {"memory_bytes", std::llround(memory)},
-                                {"seconds", sum.seconds}};
+    if (scan_.has_body) {
+      add(scan_.survey.gap(), scan_.survey.regions[scan_.survey.outside()].area, body);
+    }
     const std::size_t grids = scan_.plan.regions.size() + (scan_.has_body ? 1 : 0);
+    const double memory = estimateMemory(scan_, tissues_, voxels);
+    const double seconds = estimateSeconds(grids, voxels, voxels_to_make);
+    report_.json["estimate"] = {{"active_voxels", std::llround(voxels)},
+                                {"memory_bytes", std::llround(memory)},
+                                {"kept_grids", kept},
+                                {"processor_seconds", seconds}};
     report_.text +=
         formatCount(grids) + " grids with voxels of " + formatNumber(scan_.voxel * 1e3, 3) +
-        " mm: about " + formatCount(static_cast<std::uint64_t>(std::llround(sum.active_voxels))) +
+        " mm: about " + formatCount(static_cast<std::uint64_t>(std::llround(voxels))) +
         " active voxels; to touch them takes " + formatBytes(static_cast<std::uint64_t>(memory)) +
-        " and " + formatSeconds(sum.seconds) + " on two cores (estimated from surface areas)\n";
+        " and " + formatSeconds(seconds) + " of processor time (estimated from surface areas" +
+        (kept == 0 ? "" : "; " + formatCount(kept) + " are kept from before") + ")\n";
   }
 
   const ImportOptions& options_;
   const ImportedScan& scan_;
   const TissueTable& tissues_;
   const NeedleWay* way_;
+  const std::set<std::string>& kept_;
   Report report_;
 };
 
@@ -331,8 +341,8 @@ class ImportReport {
 
 Report importReport(const ImportOptions& options, const ImportedScan& scan,
                     const TissueTable& tissues, const NeedleWay* way,
-                    const std::vector<std::string>& written) {
-  return ImportReport(options, scan, tissues, way).make(written);
+                    const std::vector<std::string>& written, const std::set<std::string>& kept) {
+  return ImportReport(options, scan, tissues, way, kept).make(written);
 }
 
 }  // namespace palpate::tools

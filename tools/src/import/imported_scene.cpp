@@ -23,8 +23,11 @@ constexpr double kBytesPerVoxel = 105.0;     // active voxels of the grids: labe
 constexpr double kBytesPerImageVoxel = 4.0;  // while images are read
 /// 16 bits, in blocks of 8^3 with a border; blocks of one value are not stored.
 constexpr double kBytesPerMapVoxel = 2.0 * (10.0 * 10.0 * 10.0) / (8.0 * 8.0 * 8.0);
-// With two cores.
-constexpr double kSecondsPerVoxel = 5e-6;
+// [s] of processor time, measured on three scans by tests/bench/forecasts.py.
+constexpr double kSecondsOfCommand = 0.1;
+constexpr double kSecondsPerGrid = 0.022;       // to find how it lies to the other grids
+constexpr double kSecondsPerVoxel = 0.15e-6;    // active voxels: to read them and make bricks
+constexpr double kSecondsPerVoxelMade = 12e-6;  // to bake, certify and keep them
 
 /// A key or plain name, quoted only if it must be.
 std::string word(const std::string& text) {
@@ -340,13 +343,15 @@ std::vector<std::pair<std::string, double>> ImportedScan::neighborsOf(std::size_
   return shares;
 }
 
-GridEstimate estimateGrid(double area, double volume, double voxel) {
-  GridEstimate estimate;
+double estimateVoxels(double area, double volume, double voxel) {
   // A thin part has fewer voxels inside than the inner half of the band would need.
   const double side = kHalfWidth * area / (voxel * voxel);
-  estimate.active_voxels = side + std::min(side, volume / (voxel * voxel * voxel));
-  estimate.seconds = estimate.active_voxels * kSecondsPerVoxel;
-  return estimate;
+  return side + std::min(side, volume / (voxel * voxel * voxel));
+}
+
+double estimateSeconds(std::size_t grids, double active_voxels, double to_make) {
+  return kSecondsOfCommand + kSecondsPerGrid * static_cast<double>(grids) +
+         kSecondsPerVoxel * active_voxels + kSecondsPerVoxelMade * to_make;
 }
 
 const Tissue& requireTissue(const TissueTable& tissues, const std::string& name) {

@@ -70,13 +70,13 @@ struct ImportedScan {
 /// Formats a volume given in [m3].
 [[nodiscard]] std::string cubicCentimeters(double volume);
 
-/// An estimate of what a grid costs, before it is made.
-struct GridEstimate {
-  double active_voxels = 0.0;
-  double seconds = 0.0;  ///< with two cores
-};
-/// `area` [m2] of the surface, `volume` [m3] inside, `voxel` [m].
-[[nodiscard]] GridEstimate estimateGrid(double area, double volume, double voxel);
+/// Estimate of a grid's active voxels, before it is made. `area` [m2] of the surface, `volume` [m3]
+/// inside, `voxel` [m].
+[[nodiscard]] double estimateVoxels(double area, double volume, double voxel);
+
+/// [s] Estimate of the processor time until the first tick of `palpate touch`. Of the
+/// `active_voxels` in `grids`, `to_make` are to be made, and the others were kept before.
+[[nodiscard]] double estimateSeconds(std::size_t grids, double active_voxels, double to_make);
 
 /// The tissues of all regions, those of a body first, and of their linings; each once.
 /// @throws Error (kInput) as requireTissue().
