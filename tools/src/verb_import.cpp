@@ -359,7 +359,8 @@ Report run(const ImportOptions& options, const GeneralOptions& general, Console&
                    formatNumber(kClearance * 1e3) + " mm of what it must not touch");
     }
   }
-  const std::string output = options.output;
+  // A dry run may name no output. Its forecast looks for kept grids as a scene here would.
+  const std::string output = options.output.empty() ? "scene.yaml" : options.output;
   std::vector<std::string> labels = {vdb::fileName(changed_labels)};
   if (!is_relabeled) {
     labels.clear();
