@@ -456,7 +456,8 @@ ports:
     const voxel = 1e-3; // [m] of this scan
     for (const axis of [0, 1, 2]) {
       const now = await slice(axis);
-      assert.ok(now.shades > 50, JSON.stringify(now));
+      // The probe touches the crown, where an axial slice holds little more than scalp.
+      assert.ok(now.shades > (axis === 2 ? 10 : 50), JSON.stringify(now));
       assert.ok(Math.abs(now.at - probe[axis]) < voxel, `${JSON.stringify(now)} ${probe}`);
     }
     await picture(page, "head-slices");

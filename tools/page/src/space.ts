@@ -269,6 +269,7 @@ export class Space {
   }
 
   turn(azimuth: number, elevation: number): void {
+    if (azimuth === 0 && elevation === 0) return;
     this.azimuth += azimuth;
     this.elevation = Math.min(Math.max(this.elevation + elevation, -1.5), 1.5);
     this.changed();
