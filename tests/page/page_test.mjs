@@ -310,10 +310,16 @@ const tests = {
     await page.keyboard.up("ArrowLeft");
     assert.deepEqual(await page.evaluate(() => window.palpatePage.told), told);
     await page.locator("#play").click();
-    await page.waitForFunction(() => window.palpatePage.last.tick.region === 1 && window.palpatePage.last.tick.contact);
-    await picture(page, "replay");
     await page.waitForFunction(() => window.palpatePage.last.row === window.palpatePage.words.rows - 1);
     assert.equal(await page.locator("#log li").count(), 2);
+    // Back to the moment in which the hand pushes into the bottom.
+    await page.evaluate(() => {
+      const slider = document.getElementById("row");
+      slider.value = slider.max / 2;
+      slider.dispatchEvent(new Event("input"));
+    });
+    await page.waitForFunction(() => window.palpatePage.last.tick.region === 1 && window.palpatePage.last.tick.contact);
+    await picture(page, "replay");
     await page.context().close();
     await served.stop();
   },
