@@ -100,6 +100,7 @@ function look(page) {
 }
 
 async function picture(page, name) {
+  await page.waitForFunction(() => window.palpatePage.space.detail.isWhole);
   await settle(page);
   await page.screenshot({ path: path.join(out, `${name}.png`) });
   await checkLayout(page);

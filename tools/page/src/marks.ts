@@ -63,7 +63,10 @@ export class Marks {
   }
 
   private clear(): void {
-    for (const port of this.ports) port.geometry.dispose();
+    for (const port of this.ports) {
+      this.space.detail.remove(port);
+      port.geometry.dispose();
+    }
     this.ports = [];
     this.patches.clear();
   }
@@ -96,6 +99,7 @@ export class Marks {
       mesh.renderOrder = 1;
       this.ports.push(mesh);
       this.patches.add(mesh);
+      this.space.detail.add(mesh);
     }
     this.isComplete = true;
     this.space.changed();

@@ -2,6 +2,7 @@
 
 import * as THREE from "three";
 import { colorOfShare } from "./colors";
+import { Detail } from "./detail";
 import type { SceneWords, Surface, Tick, Vector } from "./wire";
 
 export type Cut = "off" | "x" | "y" | "z" | "view";
@@ -49,6 +50,7 @@ export class Space {
   /** Number of frames that were drawn, because something in them had changed. */
   drawn = 0;
   private isStale = true;
+  readonly detail = new Detail();
   private felt: { tick: Tick; marks: string } | null = null;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -142,6 +144,7 @@ export class Space {
     this.dropFormer(this.names.get(region)!);
     this.meshes.set(region, mesh);
     this.layers.add(mesh);
+    this.detail.add(mesh);
     this.look(region, opacity, visible);
   }
 
@@ -156,6 +159,7 @@ export class Space {
     if (mesh === undefined) return;
     this.former.delete(name);
     this.layers.remove(mesh);
+    this.detail.remove(mesh);
     mesh.geometry.dispose();
     (mesh.material as THREE.Material).dispose();
   }
@@ -303,7 +307,7 @@ export class Space {
       this.changed();
     }
     ++this.frames;
-    if (!this.isStale) return;
+    if (!this.detail.isDue(performance.now(), this.isStale)) return;
     this.isStale = false;
     this.camera.near = 0.01 * this.distance;
     this.camera.far = 10 * this.distance + 4 * this.diagonal;
