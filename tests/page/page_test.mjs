@@ -467,6 +467,9 @@ ports:
       assert.ok(now.shades > (axis === 2 ? 10 : 50), JSON.stringify(now));
       assert.ok(Math.abs(now.at - probe[axis]) < voxel, `${JSON.stringify(now)} ${probe}`);
     }
+    // Pressed beyond what the device can give, the page says so.
+    await page.waitForFunction(() => Math.hypot(...window.palpatePage.last.tick.force) > 1.01 * window.palpatePage.words.max_force);
+    await page.waitForFunction(() => document.getElementById("force").textContent.endsWith("; the device gives 3.3 N"));
     await picture(page, "head-slices");
     // A slider leads its slice elsewhere.
     const before = (await slice(2)).shown;

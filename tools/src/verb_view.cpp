@@ -169,7 +169,9 @@ Report viewSession(const ViewOptions& asked, const GeneralOptions& general, Cons
   LiveFeed feed(scene);
   PageDesk desk({.feed = &feed,
                  .hand = page_hand ? &page_hand->hand : nullptr,
-                 .about = Json::object({{"device", device.info().name}, {"rate", options.rate}})},
+                 .about = Json::object({{"device", device.info().name},
+                                        {"max_force", device.info().max_force},
+                                        {"rate", options.rate}})},
                 std::make_shared<const ShownScene>(scene, loaded, text, 0));
   const auto server = serve(desk, asked, console);
   const SceneReloader reloader({&session, &feed, &desk},

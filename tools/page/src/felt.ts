@@ -65,7 +65,8 @@ export class Felt {
       : Math.hypot(...tick.proxy.map((x, i) => x - (tick.hip[i] as number)));
     byId("content").textContent = tick.content || "-";
     byId("wall").textContent = tick.wall || "-";
-    byId("force").textContent = `${strength.toFixed(2)} N`;
+    const most = words.max_force ?? Infinity;
+    byId("force").textContent = `${strength.toFixed(2)} N` + (strength > most ? `; the device gives ${most} N` : "");
     byId("depth").textContent = `${(1000 * depth).toFixed(2)} mm`;
     byId("time").textContent =
       `${(tick.ns / 1000).toFixed(1)} us, worst ${(tick.worst_ns / 1000).toFixed(0)} us, late ${tick.late}`;

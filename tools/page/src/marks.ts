@@ -2,10 +2,11 @@
 
 import * as THREE from "three";
 import { styleColor, type Space } from "./space";
-import { fetchPort, type SceneWords, type Tick, type Vector } from "./wire";
+import { fetchPort, type SceneWords, type Surface, type Tick, type Vector } from "./wire";
 
 const byId = (id: string): HTMLElement => document.getElementById(id)!;
 const mostHoles = 32; // as many as a scene remembers
+const opacities = { opening: 0.5, wall: 0.1 }; // of a port in a wall, and of a wall that is all port
 
 export class Marks {
   /** Ports that are on some surface, once all are known. */
@@ -71,6 +72,14 @@ export class Marks {
     this.patches.clear();
   }
 
+  /** Whether the port is most of the wall of a layer, as where a needle may go in anywhere: marked like an opening it would hide all else. */
+  private isWall(words: SceneWords, port: number, surface: Surface): boolean {
+    return words.transitions
+      .filter((transition) => transition.port === port)
+      .flatMap(({ from, to }) => [this.space.triangles(from), this.space.triangles(to)])
+      .some((whole) => whole > 0 && surface.indices.length / 3 > 0.5 * whole);
+  }
+
   /** The ports of the scene `words` are known. */
   async come(words: SceneWords): Promise<void> {
     if (this.scene === words.number) return;
@@ -78,7 +87,7 @@ export class Marks {
     const surfaces = await Promise.all(words.ports.map((_, port) => fetchPort(words.number, port)));
     if (this.scene !== words.number) return;
     this.clear();
-    for (const surface of surfaces) {
+    for (const [port, surface] of surfaces.entries()) {
       if (surface === null) continue;
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", new THREE.BufferAttribute(surface.points, 3));
@@ -87,7 +96,7 @@ export class Marks {
         color: styleColor("--port"),
         side: THREE.DoubleSide,
         transparent: true,
-        opacity: 0.5,
+        opacity: this.isWall(words, port, surface) ? opacities.wall : opacities.opening,
         depthWrite: false,
         // Before the surface that it is part of.
         polygonOffset: true,

@@ -139,6 +139,7 @@ export class Space {
       clippingPlanes: this.clipping,
     });
     const mesh = new THREE.Mesh(geometry, material);
+    mesh.userData.triangles = surface.indices.length / 3;
     // Inner surfaces are drawn first.
     mesh.renderOrder = -region;
     this.dropFormer(this.names.get(region)!);
@@ -146,6 +147,11 @@ export class Space {
     this.layers.add(mesh);
     this.detail.add(mesh);
     this.look(region, opacity, visible);
+  }
+
+  /** Number of triangles of a region's surface; 0: it has none, or none yet. */
+  triangles(region: number): number {
+    return (this.meshes.get(region)?.userData.triangles as number | undefined) ?? 0;
   }
 
   /** All surfaces of the present scene are here. */

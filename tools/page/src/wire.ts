@@ -29,6 +29,7 @@ export interface SceneWords {
   transitions: TransitionRow[];
   mode: "hand" | "device" | "replay";
   device: string;
+  max_force?: number; // [N] of the device
   rate?: number;
   rows: number | null;
   overview?: number[];
