@@ -94,25 +94,40 @@ void RayMarch::findSpans(const Vec3& origin) {
     const auto span = within(bounds_[i], origin, way_);
     spans_[i] = span.value_or(std::pair{kInfinity, -kInfinity});
   }
+  looks_.assign(bounds_.size(), {});
 }
 
-double RayMarch::probeAlong(const Vec3& origin, double t, Signs& out) const {
+RayMarch::Reach RayMarch::probeAlong(const Vec3& origin, double t, Signs& out) {
   const Vec3 p = origin + t * way_;
-  double safe = kInfinity;
+  Reach reach;
   const auto leaves = space_.scene.partition().leaves();
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     const auto leaf = static_cast<LeafId>(i);
     const auto [enter, leave] = spans_[i];
+    Look& look = looks_[i];
     if (t < enter || t > leave) {
       out.set(leaf, false);
-      if (t < enter) safe = std::min(safe, enter - t);
+      if (t < enter) {
+        look = {enter, 0.0, 0.0, false};
+        reach.safe = std::min(reach.safe, enter - t);
+        reach.likely = std::min(reach.likely, enter - t);
+      }
       continue;
     }
-    const double value = leaves[i].field->value(p);
-    out.set(leaf, value < 0.0);
-    safe = std::min(safe, std::abs(value) / leaves[i].lipschitz);
+    if (!(std::abs(t - look.at) < look.safe)) {
+      const double value = leaves[i].field->value(p);
+      const double size = std::abs(value);
+      const double lipschitz = leaves[i].lipschitz;
+      const double known = look.at + look.safe;
+      // A slope of about 1 leaves enough behind for the two looks to meet.
+      look = {t, size / lipschitz, 2.0 * size / (lipschitz + 1.0), value < 0.0};
+      if (t - look.safe > known) reach.is_certain = false;
+    }
+    out.set(leaf, look.is_inside);
+    reach.safe = std::min(reach.safe, look.at + look.safe - t);
+    reach.likely = std::min(reach.likely, look.at + look.likely - t);
   }
-  return safe;
+  return reach;
 }
 
 double RayMarch::advance(double safe) const {
@@ -204,7 +219,7 @@ Hit RayMarch::march(const Vec3& origin, Stretch way, double free) {
     }
     layers.add(met.color, met.opacity);
   };
-  double step = probeAlong(origin, t, *here_);
+  Reach reach = probeAlong(origin, t, *here_);
   RegionId region = space_.scene.partition().regionOf(*here_);
   if (region != kOutside) {
     const Vec3 p = origin + t * way_;
@@ -221,17 +236,23 @@ Hit RayMarch::march(const Vec3& origin, Stretch way, double free) {
     meet({scaled(color, shadeOf(-way_, camera_)), opacityOf(region), 2 * region + 1});
   }
   double before = t;
-  t += advance(step);
+  t += advance(reach.likely);
   for (int i = 0; i < kMostSteps && before < way.end && layers.through > kGone; ++i) {
-    const bool is_slice = !slices_.empty() && slices_.back().first <= t;
+    bool is_slice = !slices_.empty() && slices_.back().first <= t;
     if (is_slice) t = slices_.back().first;
     if (t >= way.end) break;
-    step = probeAlong(origin, t, *there_);
+    const double certain = before + advance(reach.safe);
+    reach = probeAlong(origin, t, *there_);
+    if (!reach.is_certain && t > certain) {
+      t = certain;
+      is_slice = false;
+      reach = probeAlong(origin, t, *there_);
+    }
     const bool is_same = *here_ == *there_;
     if (!is_same && space_.scene.partition().regionOf(*there_) != region) {
       meet(surface(origin, before, t));
       region = space_.scene.partition().regionOf(*there_);
-      step = 0.0;
+      reach = {0.0, 0.0};
     } else {
       if (has_sheets_ && !is_same) {
         if (const auto met = sheet(origin, before, t)) meet(*met);
@@ -243,7 +264,7 @@ Hit RayMarch::march(const Vec3& origin, Stretch way, double free) {
     }
     std::swap(here_, there_);
     before = t;
-    t += advance(step);
+    t += advance(reach.likely);
   }
   hit.through = layers.through;
   layers.add(rgb(0xFFFFFF), 1.0);

@@ -80,6 +80,19 @@ class RayMarch {
     double end = kInfinity;   ///< [m]
     double cut = -kInfinity;  ///< [m] where it passes through the cut
   };
+  /// The last look at a leaf along a ray.
+  struct Look {
+    double at = 0.0;      ///< [m] along the ray
+    double safe = 0.0;    ///< [m] so far to both sides the leaf keeps its sign
+    double likely = 0.0;  ///< [m] so far ahead the next look is likely to show that it kept it
+    bool is_inside = false;
+  };
+  /// How far a ray can go on from a point, as said of Look.
+  struct Reach {
+    double safe = kInfinity;    ///< [m]
+    double likely = kInfinity;  ///< [m]
+    bool is_certain = true;     ///< looks show all signs between the last point and this one
+  };
   /// The traced interval of a ray; nothing if the ray misses the scene.
   [[nodiscard]] std::optional<Stretch> stretchOf(const Vec3& origin) const;
   [[nodiscard]] Hit march(const Vec3& origin, Stretch way, double free);
@@ -94,8 +107,9 @@ class RayMarch {
   double probe(const Vec3& p, Signs& out) const;
   /// Finds the interval of the ray in each leaf's box.
   void findSpans(const Vec3& origin);
-  /// probe() at `t` [m] along that ray; the returned distance holds along the ray only.
-  double probeAlong(const Vec3& origin, double t, Signs& out) const;
+  /// probe() at `t` [m] along that ray. Evaluates only the leaves whose signs the ray's earlier
+  /// points leave open.
+  Reach probeAlong(const Vec3& origin, double t, Signs& out);
   [[nodiscard]] double advance(double safe) const;
   /// The region changes between `before` and `after` on the ray; moves `after`, and the signs, to
   /// the first change.
@@ -114,7 +128,8 @@ class RayMarch {
   Vec3 way_;
   std::vector<Box3> bounds_;
   std::vector<std::pair<double, double>>
-      spans_;  ///< [m] for each leaf: interval of the ray in its box
+      spans_;                ///< [m] for each leaf: interval of the ray in its box
+  std::vector<Look> looks_;  ///< for each leaf, along the present ray
   std::vector<std::pair<double, std::size_t>>
       slices_;  ///< slices that the ray still has to meet, the last one first
   bool has_sheets_;

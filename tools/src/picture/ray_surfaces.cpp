@@ -12,6 +12,7 @@ namespace palpate::tools {
 namespace {
 
 constexpr int kHalvings = 12;
+constexpr double kFine = 0.01;  // [pixels] error of the place of a surface, if kHalvings are enough
 // Share of ink in the color of surfaces that belong to no region
 constexpr double kSheetInk = 0.25;
 constexpr int kFirstSheet =
@@ -40,7 +41,7 @@ RayMarch::Surface RayMarch::surface(const Vec3& origin, double before, double& a
   const RegionId from = partition.regionOf(*here_);
   double low = std::min(before, after);
   double high = after;
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kHalvings && high - low > kFine * camera_.step; ++i) {
     const double half = 0.5 * (low + high);
     probeAlong(origin, half, *middle_);
     if (*middle_ == *here_ || partition.regionOf(*middle_) == from) {
@@ -82,7 +83,7 @@ std::optional<RayMarch::Surface> RayMarch::sheet(const Vec3& origin, double befo
     double low = std::min(before, after);
     double high = after;
     SheetSides beyond = sheetSides(space_.scene, *there_);
-    for (int i = 0; i < kHalvings; ++i) {
+    for (int i = 0; i < kHalvings && high - low > kFine * camera_.step; ++i) {
       const double half = 0.5 * (low + high);
       probeAlong(origin, half, *middle_);
       const SheetSides sides = sheetSides(space_.scene, *middle_);
