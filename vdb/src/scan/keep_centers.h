@@ -1,0 +1,20 @@
+#pragma once
+/// The voxel centers of an image in a grid whose voxels lie at them.
+
+#include <openvdb/openvdb.h>
+
+#include "bake/bake_plan.h"
+#include "palpate/vdb/image.h"
+#include "scan/label_partition.h"
+
+namespace palpate::vdb {
+
+/// Distances of two lapped layers to their own walls need not be in the order of the values that
+/// the walls were made of: where walls bend sharply, a center could get into the other layer. So
+/// values at centers keep off the value at which layers part: the layer's own below it, all others
+/// above. Centers between the grid's voxels are left alone. `phase` [m]: of the grid's voxel (0, 0,
+/// 0).
+void keepCenters(openvdb::FloatGrid& grid, const MaskedBand& layer, const Image& image,
+                 const Vec3& phase, const BakePlan& plan);
+
+}  // namespace palpate::vdb
