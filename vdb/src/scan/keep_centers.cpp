@@ -9,7 +9,7 @@ namespace palpate::vdb {
 namespace {
 
 /// [steps] More than a spline through the grid's voxels is off at them.
-constexpr double kOff = 0.01;
+constexpr double kOff = 0.02;
 constexpr double kSamePlace = 1e-3;  // [voxels]
 
 }  // namespace
@@ -37,7 +37,9 @@ void keepCenters(openvdb::FloatGrid& grid, const MaskedBand& layer, const Image&
       auto* const leaf = grid.tree().probeLeaf(voxel);
       if (leaf == nullptr || !leaf->isValueOn(voxel)) continue;
       const auto here = static_cast<std::size_t>(mask.at(i, j, k));
-      const bool is_own = mask.inside[here] != 0 && layer.neighbors.inside[here] == 0;
+      const bool is_neighbors =
+          !layer.neighbors.inside.empty() && layer.neighbors.inside[here] != 0;
+      const bool is_own = mask.inside[here] != 0 && !is_neighbors;
       const auto parting = static_cast<double>(layer.parting[b][n]);
       const float value = leaf->getValue(voxel);
       const float kept = is_own ? std::min(value, static_cast<float>((parting - kOff) * units))

@@ -231,6 +231,7 @@ MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progre
   MaskedBand own = cached(layers_[index], progress);
   if (neighbors.empty()) {
     keepSides(own);
+    own.parting.resize(own.band.blocks.size());  // at 0
     return own;
   }
   Limits limits = limitsOf(index, neighbors, progress);

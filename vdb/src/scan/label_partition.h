@@ -23,8 +23,9 @@ struct MaskedBand {
   /// empty.
   Mask neighbors = {};
   double excess = 0.0;  ///< [voxels] how much more volume the surface encloses than the mask has
-  /// [steps] For lapped layers, by block: the value at which the layers that meet at a voxel part.
-  /// The layer's own centers lie below it, all others above. Otherwise empty.
+  /// [steps] For lapped layers and layers without neighbors, by block: the value at which the
+  /// layers that meet at a voxel part. The layer's own centers lie below it, all others above.
+  /// Otherwise empty.
   std::vector<BandBlock::Values> parting = {};
 };
 
