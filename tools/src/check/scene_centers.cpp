@@ -26,7 +26,7 @@ ImageCenters centersOf(const SceneImage& image, const LoadedScene& loaded, const
   try {
     voxels = vdb::readImage(image.file, image.options);
   } catch (const Error&) {
-    // Its grids were made before, or the scene could not be: they came with a bundle.
+    // The scene loaded, so its grids were baked before: they came with a bundle.
     out.has_voxels = false;
     return out;
   }

@@ -18,8 +18,8 @@ struct ImageCenters {
   vdb::LabelCenters centers;
 };
 
-/// Of each image that layers take labels of, in the order of the file. What another layer, not of
-/// the image, has is not looked at.
+/// The centers of each image whose labels layers use, in the order of the file. Centers in a layer
+/// that uses none of the image's labels do not count.
 [[nodiscard]] std::vector<ImageCenters> imageCenters(const LoadedScene& loaded, const Scene& scene);
 
 [[nodiscard]] Json centersJson(const std::vector<ImageCenters>& all);

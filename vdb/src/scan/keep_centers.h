@@ -1,5 +1,6 @@
 #pragma once
-/// The voxel centers of an image in a grid whose voxels lie at them.
+/// Keeps the voxel centers of an image in their layers, in grids whose voxels have the same
+/// centers.
 
 #include <openvdb/openvdb.h>
 
@@ -11,9 +12,9 @@ namespace palpate::vdb {
 
 /// Distances of two lapped layers to their own walls need not be in the order of the values that
 /// the walls were made of: where walls bend sharply, a center could get into the other layer. So
-/// values at centers keep off the value at which layers part: the layer's own below it, all others
-/// above. Centers between the grid's voxels are left alone. `phase` [m]: of the grid's voxel (0, 0,
-/// 0).
+/// values at the layer's own centers are kept below the value at which layers part, and all others
+/// above it. Centers between the grid's voxels are left alone. `phase` [m]: center of the grid's
+/// voxel (0, 0, 0).
 void keepCenters(openvdb::FloatGrid& grid, const MaskedBand& layer, const Image& image,
                  const Vec3& phase, const BakePlan& plan);
 

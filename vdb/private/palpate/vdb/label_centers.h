@@ -1,5 +1,5 @@
 #pragma once
-/// Whether the parts made of a label image still have the voxel centers of their labels.
+/// Counts the voxel centers of a label image that are in another part than their label's.
 
 #include <cstdint>
 #include <functional>
@@ -10,27 +10,26 @@
 
 namespace palpate::vdb {
 
-/// Which part has a voxel's label, or a point: an index of the caller's.
-inline constexpr int kNoPart = -1;     ///< it is in none of the image's parts
-inline constexpr int kOtherPart = -2;  ///< something else has the point: not looked at
+/// The caller numbers the parts from 0. These stand for places outside them:
+inline constexpr int kNoPart = -1;     ///< in none of the image's parts
+inline constexpr int kOtherPart = -2;  ///< in a part of something else: not looked at
 
 struct CenterCount {
   std::uint64_t centers = 0;
   std::uint64_t changed = 0;  ///< in another part than that of their label
-  /// Of the changed ones, those that no more than half of their neighbors gave reason to change:
-  /// at least half of the 26 have the voxel's own part.
+  /// The changed ones of which at least half of the 26 neighbors have the voxel's own part.
   std::uint64_t against = 0;
 };
 
 struct LabelCenters {
-  std::map<int, CenterCount> parts;  ///< kNoPart: voxels in none that are beside a part
-  CenterCount all;                   ///< of all these
+  std::map<int, CenterCount> parts;  ///< by part; kNoPart: voxels in none that are beside a part
+  CenterCount all;                   ///< the sum
   std::optional<Vec3> place;         ///< [m] of the first that changed against its neighbors
 };
 
-/// Looks at every voxel near the border of a part, two voxels away from it at most; deeper ones
-/// count as unchanged. `part_of`: by label; labels that are not in it are in no part. `part_at`:
-/// what a point [m] is in; called from several threads.
+/// Looks at every voxel that is at most two voxels away from the border of a part; deeper ones
+/// count as unchanged. `part_of`: the part of each label; a label without an entry is in no part.
+/// `part_at`: gives the part at a point [m]; called from several threads.
 [[nodiscard]] LabelCenters countCenters(const Image& image, const std::map<int, int>& part_of,
                                         const std::function<int(const Vec3&)>& part_at);
 
