@@ -4,6 +4,8 @@
 
 #include <openvdb/openvdb.h>
 
+#include <string>
+
 #include "bake/bake_plan.h"
 #include "palpate/vdb/image.h"
 #include "scan/label_partition.h"
@@ -15,7 +17,7 @@ namespace palpate::vdb {
 /// values at the layer's own centers are kept below the value at which layers part, and all others
 /// above it. Centers between the grid's voxels are left alone. `phase` [m]: center of the grid's
 /// voxel (0, 0, 0).
-void keepCenters(openvdb::FloatGrid& grid, const MaskedBand& layer, const Image& image,
-                 const Vec3& phase, const BakePlan& plan);
+void keepCenters(const openvdb::FloatGrid::Ptr& grid, const MaskedBand& layer, const Image& image,
+                 const Vec3& phase, const BakePlan& plan, const std::string& length_unit);
 
 }  // namespace palpate::vdb

@@ -191,13 +191,14 @@ class Redistance {
 
 LevelSet bakeSpline(const LatticeSpline& spline, const Band& band, const Mask& mask,
                     const Image& image, const BakeOptions& options, const Progress& progress,
-                    const Vec3& phase, const std::function<void(openvdb::FloatGrid&)>& last) {
+                    const Vec3& phase,
+                    const std::function<void(const openvdb::FloatGrid::Ptr&)>& last) {
   Redistance redistance(spline, band, mask, image, phase, options, progress);
   const DistanceLeaves& leaves = redistance.run();
   const BakePlan& plan = redistance.plan();
   const openvdb::FloatGrid::Ptr grid = gridOf(leaves, plan, options);
   fitToSpline(grid, leaves, plan, options);
-  if (last) last(*grid);
+  if (last) last(grid);
   const Vec3 units = phase / plan.meters_per_unit;
   grid->transform().postTranslate(openvdb::Vec3d(units.x, units.y, units.z));
   report(progress, "distances", 1.0);

@@ -78,8 +78,9 @@ LevelSet bakeBand(const MaskedBand& of, const Image& image, double voxel_size, B
   BakeOptions wide = bake;
   if (box) wide.half_width += kCubicHalfWidth;
   const LevelSet whole = bakeSpline(
-      spline, band, mask, image, wide, rest, phase,
-      [&](openvdb::FloatGrid& grid) { keepCenters(grid, of, image, phase, checkOptions(wide)); });
+      spline, band, mask, image, wide, rest, phase, [&](const openvdb::FloatGrid::Ptr& grid) {
+        keepCenters(grid, of, image, phase, checkOptions(wide), wide.length_unit);
+      });
   const auto lost = metadataOf(findLoss(whole, band, mask, of.neighbors, image));
   if (!box) return whole.named(whole.info().name, lost);
   // The faces where a box cuts are flat: those of the baked field.
