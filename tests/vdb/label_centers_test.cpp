@@ -51,10 +51,65 @@ TEST(LabelCenters, CountsWhatChangedAndWhatChangedAgainstItsNeighbors) {
 
 // Where the grid's voxels lie at those of the image, which side a center is on is stored.
 TEST(LabelCenters, ABallsCentersAreAllOnTheirSide) {
-  for (const Vec3& center : {Vec3(0.13, -0.29, 0.37), Vec3(-0.21, 0.08, 1.12)}) {
-    const Image image = test::BallPhantom{center, 9.0}.image(Vec3(1.0));
-    EXPECT_EQ(test::LabelScene(image).centers().all.changed, 0U);
+  for (const Vec3& spacing : {Vec3(1.0), Vec3(0.5, 0.5, 2.0)}) {
+    for (const Vec3& center : {Vec3(0.13, -0.29, 0.37), Vec3(-0.21, 0.08, 1.12)}) {
+      const Image image = test::BallPhantom{center, 9.0}.image(spacing);
+      EXPECT_EQ(test::LabelScene(image).centers().all.changed, 0U);
+    }
   }
+}
+
+// Bounds from what a clinician accepts: none against its neighbors, 0.3 % of the others.
+TEST(LabelCenters, HardlyAnyChangesInFoldsAndLayersOneVoxelThin) {
+  const test::FoldedHead head;
+  const Image image = head.image(Vec3(1.0));
+  const test::LabelScene scene(image);
+  const CenterCount& all = scene.centers().all;
+  EXPECT_GT(all.centers, 50000U);
+  EXPECT_EQ(all.against, 0U);
+  EXPECT_LT(1000U * all.changed, 3U * all.centers);
+  EXPECT_EQ(test::openRays(scene, 4, head.radius, 0.05, 1000), 0) << "the dura has a hole";
+}
+
+// A degree is what a clinician accepts in slices 4 : 1.
+TEST(LabelPhantoms, ABallInThickSlicesHasItsNormals) {
+  for (const Vec3& center :
+       {Vec3(0.13, -0.29, 0.37), Vec3(-0.21, 0.08, 1.12), Vec3(0.05, 0.22, -0.71)}) {
+    const test::BallPhantom ball{center, 15.0};
+    const Image image = ball.image(Vec3(0.5, 0.5, 2.0));
+    const test::LabelScene scene(image);
+    const test::SurfaceError error = test::surfaceError(*scene.field(1), ball.points());
+    EXPECT_LT(error.normal, 1.0);
+    EXPECT_LT(std::abs(error.bias), 0.05 * 0.5);
+  }
+}
+
+// Bounds from what a clinician accepts: a twentieth of a voxel from three voxels on, edges rounded
+// over at most a voxel.
+TEST(LabelPhantoms, AFaceBetweenCliffsIsFlatUpToItsEdges) {
+  const Vec3 spacing(1.0);
+  for (const test::SlabPhantom& slab :
+       {test::SlabPhantom{{24, 20, 8}}, test::SlabPhantom{{40, 30, 4}}}) {
+    const Image image = slab.image(spacing);
+    const test::LabelScene scene(image);
+    const Field& field = *scene.field(1);
+    EXPECT_LT(slab.error(field, spacing, 3.0, kInfinity), 0.05);
+    EXPECT_LT(slab.cutOff(field, spacing), 1.0);
+    EXPECT_EQ(scene.centers().all.changed, 0U);
+  }
+}
+
+// The image's border bends no surface: a tilted plane is as flat beside it as anywhere else
+// (LabelSurface.BallTorusAndTiltedPlaneAtOnce).
+TEST(LabelPhantoms, AnInterfaceIsFlatUpToTheImagesBorder) {
+  const Vec3 spacing(1.0);
+  const test::PlanePhantom plane{Vec3(0.13, -0.29, 0.37), glm::normalize(Vec3(0.4, 0.3, 1))};
+  const Image image = plane.image(spacing);
+  const test::LabelScene scene(image);
+  const test::SurfaceError error =
+      test::surfaceError(*scene.field(1), plane.points(spacing), scene.field(2).get());
+  EXPECT_LT(error.normal, 0.5);
+  EXPECT_LT(error.most, 0.1);
 }
 
 TEST(LabelCenters, AnInterfacesCentersAreAllOnTheirSide) {

@@ -154,7 +154,7 @@ std::shared_ptr<const MaskedBand> LabelPartition::smoothed(const Labels& labels,
   if (result->mask.inside.empty()) return result;
   const Vec3 lengths = lengthsOf(image_);
   const double smallest = std::min({lengths.x, lengths.y, lengths.z});
-  result->band = bandOf(result->mask, lengths / smallest);
+  result->band = bandOf(result->mask, lengths / smallest, /*is_open=*/true);
   smoothBand(result->band, result->mask, image_.axes / smallest, progress);
   result->excess = keepVolume(result->band, result->mask);
   result->band.dropBounds();
@@ -232,6 +232,7 @@ MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progre
   if (neighbors.empty()) {
     keepSides(own);
     own.parting.resize(own.band.blocks.size());  // at 0
+    closeBand(own.band, own.mask);
     return own;
   }
   Limits limits = limitsOf(index, neighbors, progress);
@@ -271,6 +272,7 @@ MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progre
       value = onSide(value, inside != 0);
     });
   });
+  closeBand(own.band, own.mask);
   return own;
 }
 
@@ -307,6 +309,7 @@ std::optional<MaskedBand> LabelPartition::unite(const Progress& progress) {
       block.value[n] = onSide(value, result.mask.inside[here] != 0);
     });
   });
+  closeBand(result.band, result.mask);
   return result;
 }
 
