@@ -315,7 +315,7 @@ TEST(ImportPelvis, ANeedleGoesThroughSkinFatAndMuscleToTheBoneAsItsModelSays) {
     // needle pressed, the next wall takes over at once.
     EXPECT_LT(opened[n].after, opened[n].before - (opened[n].is_held ? 0.0 : 0.2));
   }
-  // Each layer by the labels, up to the bone, that is no thinner than a voxel is met: also the fat
+  // Each layer by the labels, up to the bone, that is at least a voxel thick is met: also the fat
   // between two muscles that lie 1.2 mm apart.
   std::size_t layers = 0;
   for (std::size_t n = 0; n + 1 < runs.size() && runs[n][0] < ray.depth[2] - ray.voxel; ++n) {

@@ -35,7 +35,7 @@ TEST(LabelCenters, CountsWhatChangedAndWhatChangedAgainstItsNeighbors) {
   ASSERT_TRUE(hole.place.has_value());
   EXPECT_LT(glm::length(*hole.place - lost), 1e-6);
 
-  // What something else has is not looked at.
+  // Centers in something else are not looked at.
   const LabelCenters covered = countCenters(image, part_of, [&](const Vec3& p) {
     return glm::length(p - lost) < 1e-6 ? kOtherPart : truth(p);
   });

@@ -26,8 +26,7 @@ class Opposite {
     alignas(32) std::array<float, 512> square;  ///< [steps^2] to the nearest; kNone: there is none
     alignas(32) std::array<float, 512> voxels;  ///< [voxels^2] for the same voxel; the shortest if
                                                 ///< several are equally near
-    alignas(
-        32) std::array<float, 512> fewest;  ///< [voxels^2] to the one that is fewest voxels away
+    alignas(32) std::array<float, 512> fewest;  ///< [voxels^2] to that with the fewest voxels
   };
   static constexpr float kNone = 1e9F;
 
