@@ -135,7 +135,16 @@ TEST(Scan, WhatAScenesGridsLoseIsTold) {
   const Json grid = file["grids"][0];
   EXPECT_EQ(grid["lost_voxels"].get<int>() + grid["filled_voxels"].get<int>(), finding["count"]);
   EXPECT_EQ(grid["lost_at_m"], finding["place_m"]);
-  EXPECT_NE(runPalpate({"check", coarse}).out.find("of the scan"), std::string::npos);
+  const std::string told = runPalpate({"check", coarse}).out;
+  EXPECT_NE(told.find("of the scan"), std::string::npos);
+  EXPECT_NE(told.find("labels of s: "), std::string::npos) << told;
+  ASSERT_EQ(file["label_centers"].size(), 1U) << file;
+  const Json& centers = file["label_centers"][0];
+  EXPECT_EQ(centers["image"], "s");
+  // The block of 5 x 8 x 8, the plate of 64, and what lies beside them.
+  EXPECT_EQ(centers["layers"][1]["layer"], "block");
+  EXPECT_EQ(centers["layers"][1]["centers"], 5 * 64 + 64);
+  EXPECT_GT(centers["changed"], 5) << "much of the plate is lost";
 
   const CommandResult drawn = runPalpate(
       {"render", coarse, "-o", folder.path("p.png"), "--plane", "z=0", "--size", "640x400"});
@@ -150,6 +159,9 @@ TEST(Scan, WhatAScenesGridsLoseIsTold) {
   const Json whole = parseOnly(fine)["files"][0];
   // Four voxels at the plate's corners, which are rounded off.
   EXPECT_LE(whole["grids"][0]["lost_voxels"], 4) << whole;
+  EXPECT_LE(whole["label_centers"][0]["changed"], 4) << whole;
+  EXPECT_EQ(whole["label_centers"][0]["against_neighbors"], 0) << whole;
+  EXPECT_TRUE(whole["label_centers"][0]["against_at_m"].is_null()) << whole;
 }
 
 TEST(Scan, PicturesHaveTheColorsOfTheTable) {

@@ -1,4 +1,5 @@
 #include "check/file_check.h"
+#include "check/scene_centers.h"
 #include "loaded_scene.h"
 #include "map_coverage.h"
 #include "palpate/vdb/scan_surface.h"
@@ -35,6 +36,7 @@ FileCheck checkSceneFile(const std::string& file, Console& console) {
   for (const WallNote& note : wallNotes(*scene)) {
     if (note.is_warning) findings.push_back({note.code, note.text, 1, note.place});
   }
+  const std::vector<ImageCenters> centers = imageCenters(loaded, *scene);
   const std::size_t layers = scene->regions().size() - 1;
   FileCheck out;
   out.json = {{"file", file},
@@ -43,11 +45,12 @@ FileCheck checkSceneFile(const std::string& file, Console& console) {
               {"layers", layers},
               {"ports", scene->ports().size()},
               {"grids", loaded.gridsJson()},
+              {"label_centers", centersJson(centers)},
               {"findings", findingsJson(findings)}};
   out.text = file + ": a scene, " + countOf(layers, "layer", "layers") + ", " +
              countOf(scene->ports().size(), "port", "ports") + ", " +
-             countOf(loaded.grids().size(), "grid", "grids") + "\n" + findingsText(findings, "  ") +
-             "  yes\n";
+             countOf(loaded.grids().size(), "grid", "grids") + "\n" +
+             centersText(centers, loaded.unit()) + findingsText(findings, "  ") + "  yes\n";
   return out;
 }
 

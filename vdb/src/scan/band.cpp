@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "scan/cliff_faces.h"
 #include "scan/for_blocks.h"
 #include "scan/opposite.h"
 #include "scan/slices.h"
@@ -21,28 +22,29 @@ constexpr double kBeside = 1.8;  ///< voxels that share a corner
 /// for a smooth surface. A smaller value would bend curved surfaces. For voxels that are not cubes,
 /// the unit is their diagonal.
 constexpr double kSlack = 1.3;
+/// At least this share of the longest edge: a surface along thick slices may pass close by one
+/// slice's centers. A whole edge lets layers as thin as a slice lose centers in folds.
+constexpr double kThickSlack = 0.82;
 /// Share of the step between two voxels at which the surface is assumed at first.
 constexpr double kHalf = 0.5;
-
-struct Offset {
-  std::array<int, 3> step{};
-  double steps = 0.0;     ///< its length in voxels
-  double distance = 0.0;  ///< in steps of the smallest spacing
-};
+/// [voxels] How far a flat face between cliffs may be from half-way.
+constexpr double kLevel = 0.01;
 
 class Finder {
  public:
-  Finder(const Mask& mask, const Vec3& spacing)
+  Finder(const Mask& mask, const Vec3& spacing, bool is_open)
       : mask_(mask),
         spacing_(spacing),
-        slack_(kSlack * glm::length(spacing) / std::sqrt(3.0)),
+        slack_(std::max(kSlack * glm::length(spacing) / std::sqrt(3.0),
+                        kThickSlack * std::max({spacing.x, spacing.y, spacing.z}))),
+        longest_(std::max({spacing.x, spacing.y, spacing.z})),
         opposite_(spacing),
-        slices_(SliceDistances::of(mask, spacing)),
-        is_cubic_(glm::length(spacing - Vec3(1.0)) < 1e-5) {
+        slices_(SliceDistances::of(mask, spacing)) {
+    band_.spacing = spacing;
+    band_.is_open = is_open;
     band_.first = mask.first;
     band_.box = mask.box;
     for (std::size_t a = 0; a < 3; ++a) band_.table_size[a] = (mask.box[a] + 7) / 8;
-    makeOffsets();
   }
 
   Band run() {
@@ -56,24 +58,6 @@ class Finder {
  private:
   [[nodiscard]] bool inside(std::ptrdiff_t n) const noexcept {
     return mask_.inside[static_cast<std::size_t>(n)] != 0;
-  }
-
-  void makeOffsets() {
-    constexpr int kR = Band::kReach;
-    for (int i = -kR; i <= kR; ++i) {
-      for (int j = -kR; j <= kR; ++j) {
-        for (int k = -kR; k <= kR; ++k) {
-          const int square = i * i + j * j + k * k;
-          if (square == 0 || square > kR * kR) continue;
-          offsets_.push_back({{i, j, k}, std::sqrt(square), glm::length(Vec3(i, j, k) * spacing_)});
-        }
-      }
-    }
-    // Ties are broken by the length in voxels, so that an offset and its opposite, as seen from the
-    // other side, sort alike.
-    std::stable_sort(offsets_.begin(), offsets_.end(), [](const Offset& a, const Offset& b) {
-      return a.distance != b.distance ? a.distance < b.distance : a.steps < b.steps;
-    });
   }
 
   template <typename Visit>
@@ -163,13 +147,10 @@ class Finder {
                               const std::array<int, 3>& at) const noexcept {
     const int n = ((at[2] & 7) * 8 + (at[1] & 7)) * 8 + (at[0] & 7);
     const auto place = static_cast<std::size_t>(n);
-    if (found.square[place] >= Opposite::kNone) return {};
-    const auto voxels = static_cast<double>(found.voxels[place]);
-    if (voxels <= Band::kReach * Band::kReach) {
-      return {std::sqrt(voxels), std::sqrt(static_cast<double>(found.square[place]))};
-    }
     // With unequal spacings, a voxel that is farther away may be fewer voxels away.
-    return is_cubic_ ? Other{} : otherWithinReach(at);
+    if (found.fewest[place] > Band::kReach * Band::kReach) return {};
+    return {std::sqrt(static_cast<double>(found.voxels[place])),
+            std::sqrt(static_cast<double>(found.square[place]))};
   }
 
   [[nodiscard]] bool isByBorder(const std::array<int, 3>& first) const noexcept {
@@ -181,6 +162,7 @@ class Finder {
     return by;
   }
 
+  /// Returns whether the voxel is in the band.
   bool fillVoxel(BandBlock& block, BlockBounds& bounds, const std::array<int, 3>& at,
                  const Other& other) const noexcept {
     const std::ptrdiff_t n = mask_.at(at[0], at[1], at[2]);
@@ -191,43 +173,25 @@ class Finder {
     if (other.steps < kInfinity) {
       size = other.distance * (1.0 - kHalf / other.steps);
       if (slices_) size = slices_->distanceAt(at).value_or(size);
-      lower = std::max(0.0, other.distance - slack_);
+      lower = std::max(0.0, std::min(other.distance, opposite_.seen()) - slack_);
       upper = other.distance;
     }
-    if (is_inside) size = std::min(size, borderDistance(at));
-    if (!(size < kInfinity)) return false;
+    const double border = is_inside ? band_.borderDistance(at) : kInfinity;
+    if (!band_.is_open) size = std::min(size, border);
+    if (!(size < kInfinity)) return border < kInfinity;
     if (other.steps < kBeside && isAtThinPart(mask_, at)) lower = std::max(lower, kHold);
+    if (other.distance <= longest_) {
+      if (const std::optional<int> axis = cliffFaceAxis(mask_, at)) {
+        lower = std::max(lower, (kHalf - kLevel) * spacing_[*axis]);
+        upper = std::min(upper, (kHalf + kLevel) * spacing_[*axis]);
+      }
+    }
     size = std::clamp(size, lower, upper);
     const std::size_t place = Band::placeOf(at[0], at[1], at[2]);
     block.value[place] = static_cast<float>(is_inside ? -size : size);
     bounds.lower[place] = static_cast<float>(is_inside ? -upper : lower);
     bounds.upper[place] = static_cast<float>(is_inside ? -lower : upper);
     return true;
-  }
-
-  [[nodiscard]] Other otherWithinReach(const std::array<int, 3>& at) const noexcept {
-    const bool side = inside(mask_.at(at[0], at[1], at[2]));
-    for (const Offset& offset : offsets_) {
-      const std::array<int, 3> there = {at[0] + offset.step[0], at[1] + offset.step[1],
-                                        at[2] + offset.step[2]};
-      // Beyond the image nothing is known; it does not count as outside.
-      if (isIn(mask_, there) && inside(mask_.at(there[0], there[1], there[2])) != side) {
-        return {offset.steps, offset.distance};
-      }
-    }
-    return {};
-  }
-
-  /// Distance to the image's border, if that is within reach. An inside voxel near the box's border
-  /// is near the image's border: masks have a margin elsewhere.
-  [[nodiscard]] double borderDistance(const std::array<int, 3>& at) const noexcept {
-    double nearest = kInfinity;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis);
-      const int steps = std::min(at[a], mask_.box[a] - 1 - at[a]);
-      if (steps < Band::kReach) nearest = std::min(nearest, (steps + kHalf) * spacing_[axis]);
-    }
-    return nearest;
   }
 
   void dropEmpty() {
@@ -269,10 +233,9 @@ class Finder {
   const Mask& mask_;
   Vec3 spacing_;
   double slack_;  ///< in steps of the smallest spacing
+  double longest_;
   Opposite opposite_;
   std::optional<SliceDistances> slices_;
-  bool is_cubic_;
-  std::vector<Offset> offsets_;
   Band band_;
 };
 
@@ -288,6 +251,35 @@ float Band::valueAt(int i, int j, int k) const noexcept {
   return blocks[static_cast<std::size_t>(block)].value[placeOf(at[0], at[1], at[2])];
 }
 
-Band bandOf(const Mask& mask, const Vec3& spacing) { return Finder(mask, spacing).run(); }
+/// An inside voxel near the box's border is near the image's border: masks have a margin elsewhere.
+double Band::borderDistance(const std::array<int, 3>& at) const noexcept {
+  double nearest = kInfinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const int steps = std::min(at[a], box[a] - 1 - at[a]);
+    if (steps < kReach) nearest = std::min(nearest, (steps + kHalf) * spacing[axis]);
+  }
+  return nearest;
+}
+
+Band bandOf(const Mask& mask, const Vec3& spacing, bool is_open) {
+  return Finder(mask, spacing, is_open).run();
+}
+
+void closeBand(Band& band, const Mask& mask) {
+  forBlocks(band.blocks.size(), [&](std::size_t b) {
+    BandBlock& block = band.blocks[b];
+    for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
+      const auto place = static_cast<int>(n);
+      const std::array<int, 3> at = {block.first[0] + (place >> 6),
+                                     block.first[1] + (place >> 3 & 7),
+                                     block.first[2] + (place & 7)};
+      if (!isIn(mask, at)) continue;
+      if (mask.inside[static_cast<std::size_t>(mask.at(at[0], at[1], at[2]))] == 0) continue;
+      block.value[n] = band.closed(block.value[n], at);
+    }
+  });
+  band.is_open = false;
+}
 
 }  // namespace palpate::vdb

@@ -31,11 +31,17 @@ struct BlockBounds {
 
 /// All lengths are in steps of the smallest spacing. The band holds every voxel that has a voxel of
 /// the other side within kReach voxels, and inside voxels that near to the image's border.
+///
+/// A shape that reaches the image's border ends there, half a voxel beyond its last voxel. In an
+/// open band that is left out: values are those of the surface within the image, and voxels that
+/// are near the border alone have none (NaN), so that the border bends no surface.
 struct Band {
   static constexpr int kReach = 5;
 
   std::array<int, 3> first{};       ///< as in Mask
   std::array<int, 3> box{};         ///< as in Mask
+  Vec3 spacing{1.0, 1.0, 1.0};      ///< of the voxels along each axis
+  bool is_open = false;             ///< see above
   std::array<int, 3> table_size{};  ///< blocks along each axis
   std::vector<std::int32_t> table;  ///< index of each block in `blocks`, or -1; first axis fastest
   HugeVector<BandBlock> blocks;
@@ -50,6 +56,16 @@ struct Band {
   }
   /// The value at an index of the image; NaN: not in the band.
   [[nodiscard]] float valueAt(int i, int j, int k) const noexcept;
+  /// Distance of an inside voxel of the box to the image's border; infinite if that is not within
+  /// kReach voxels.
+  [[nodiscard]] double borderDistance(const std::array<int, 3>& at) const noexcept;
+  /// The value of an inside voxel when the shape ends at the border, from that in an open band.
+  [[nodiscard]] float closed(float value, const std::array<int, 3>& at) const noexcept {
+    const double border = borderDistance(at);
+    if (!is_open || !(border < kInfinity)) return value;
+    const auto end = static_cast<float>(-border);
+    return value > end ? value : end;  // NaN, too, becomes the border's
+  }
   [[nodiscard]] static std::size_t placeOf(int i, int j, int k) noexcept {
     const int place = ((i & 7) << 6) | ((j & 7) << 3) | (k & 7);
     return static_cast<std::size_t>(place);
@@ -59,7 +75,10 @@ struct Band {
 /// How far each voxel center may be from the surface, judging by the mask alone. If the nearest
 /// voxel of the other side is d away, the surface is at most d away, and hardly nearer than the
 /// last voxel of the own side on the way there. Parts one voxel thin are held open. `spacing`: of
-/// the voxels along each axis, in units of the smallest.
-[[nodiscard]] Band bandOf(const Mask& mask, const Vec3& spacing);
+/// the voxels along each axis, in units of the smallest. Faces between cliffs are half-way.
+[[nodiscard]] Band bandOf(const Mask& mask, const Vec3& spacing, bool is_open = false);
+
+/// Ends the shape of an open band at the image's border.
+void closeBand(Band& band, const Mask& mask);
 
 }  // namespace palpate::vdb

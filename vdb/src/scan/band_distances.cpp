@@ -32,6 +32,7 @@ class Distances {
   Distances(Band& band, const Mask& mask, const Mat3& axes)
       : band_(band),
         axes_(axes),
+        to_index_(glm::inverse(axes)),
         spline_(band, mask, axes, Vec3(0.0)),
         feet_(band.blocks.size()),
         taken_(band.blocks.size()) {}
@@ -95,7 +96,7 @@ class Distances {
     const Vec3 p = axes_ * Vec3(block.first[0] + (n >> 6), block.first[1] + (n >> 3 & 7),
                                 block.first[2] + (n & 7));
     const std::optional<LatticeSpline::Foot> foot = spline_.foot(p, p + start);
-    if (!foot) return;
+    if (!foot || isAtBorder(foot->point)) return;
     const float value = block.value[place];
     const double distance = std::abs(foot->distance);
     if (std::abs(distance - static_cast<double>(std::fabs(value))) >
@@ -106,6 +107,18 @@ class Distances {
     taken_[b].push_back({place, foot->point - p,
                          std::clamp(std::copysign(static_cast<float>(distance), value),
                                     bounds.lower[place], bounds.upper[place])});
+  }
+
+  /// Whether a place is on the image's border, where shapes end but open bands do not.
+  [[nodiscard]] bool isAtBorder(const Vec3& p) const noexcept {
+    constexpr double kMost = 0.25;  // [voxels] beyond the last voxel's center
+    if (!band_.is_open) return false;
+    const Vec3 index = to_index_ * p;
+    for (int a = 0; a < 3; ++a) {
+      const double last = band_.box[static_cast<std::size_t>(a)] - 1;
+      if (index[a] < -kMost || index[a] > last + kMost) return true;
+    }
+    return false;
   }
 
   /// Applied when all voxels have searched, so that none uses results of the same round.
@@ -136,6 +149,7 @@ class Distances {
 
   Band& band_;
   Mat3 axes_;
+  Mat3 to_index_;
   LatticeSpline spline_;  ///< through the old values
   HugeVector<Feet> feet_;
   std::vector<std::vector<Taken>> taken_;  ///< results of this round, for each block

@@ -80,6 +80,11 @@ float lapped(float own, float least, float united, float lap) {
   return std::max(std::min(0.5F * (own + united), united + kMostGroove), wall);
 }
 
+/// The value that lapped() gives where a layer's own value and those of its neighbors are 0.
+float partingOf(float united, float lap) {
+  return std::isnan(united) ? -lap : lapped(0.0F, 0.0F, std::min(united, 0.0F), lap);
+}
+
 /// [m] Edge lengths of a voxel.
 Vec3 lengthsOf(const Image& image) {
   return {glm::length(image.axes[0]), glm::length(image.axes[1]), glm::length(image.axes[2])};
@@ -111,6 +116,16 @@ float onSide(float value, bool inside) {
   return inside ? std::min(value, -kLeastValue) : std::max(value, kLeastValue);
 }
 
+/// [steps] How far from a wall between layers a voxel's center is at least, by each layer's own
+/// values: more than the grids of two layers differ at their wall, and so little that walls keep
+/// their slopes.
+constexpr float kOffWall = 0.02F;
+
+/// `value` less `shift`, on the side of the mask: no voxel's center gets into another layer.
+float shifted(float value, float shift, bool inside) {
+  return inside ? std::min(value - shift, -kOffWall) : std::max(value - shift, kOffWall);
+}
+
 void keepSides(MaskedBand& layer) {
   forBlocks(layer.band.blocks.size(), [&](std::size_t b) {
     BandBlock& block = layer.band.blocks[b];
@@ -139,7 +154,7 @@ std::shared_ptr<const MaskedBand> LabelPartition::smoothed(const Labels& labels,
   if (result->mask.inside.empty()) return result;
   const Vec3 lengths = lengthsOf(image_);
   const double smallest = std::min({lengths.x, lengths.y, lengths.z});
-  result->band = bandOf(result->mask, lengths / smallest);
+  result->band = bandOf(result->mask, lengths / smallest, /*is_open=*/true);
   smoothBand(result->band, result->mask, image_.axes / smallest, progress);
   result->excess = keepVolume(result->band, result->mask);
   result->band.dropBounds();
@@ -169,7 +184,11 @@ std::vector<std::size_t> LabelPartition::neighborsOf(std::size_t index, const Pr
 
 float LabelPartition::Limits::leastAt(int x, int y, int z) const noexcept {
   float least = std::numeric_limits<float>::quiet_NaN();
-  for (const auto& [band, shift] : others) least = std::fmin(least, band->valueAt(x, y, z) - shift);
+  for (const auto& [layer, shift] : others) {
+    const float value = layer->band.valueAt(x, y, z);
+    if (std::isnan(value)) continue;
+    least = std::fmin(least, shifted(value, shift, layer->mask.holds(x, y, z)));
+  }
   return least;
 }
 
@@ -185,7 +204,7 @@ LabelPartition::Limits LabelPartition::limitsOf(std::size_t index,
   Limits limits;
   limits.whole = &cached(labels, progress);
   for (const std::size_t n : neighbors) {
-    limits.others.emplace_back(&cached(layers_[n], progress).band, 0.0F);
+    limits.others.emplace_back(&cached(layers_[n], progress), 0.0F);
   }
   return limits;
 }
@@ -212,6 +231,8 @@ MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progre
   MaskedBand own = cached(layers_[index], progress);
   if (neighbors.empty()) {
     keepSides(own);
+    own.parting.resize(own.band.blocks.size());  // at 0
+    closeBand(own.band, own.mask);
     return own;
   }
   Limits limits = limitsOf(index, neighbors, progress);
@@ -227,6 +248,7 @@ MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progre
   if (is_lapped) {
     own.neighbors = own.mask;
     std::fill(own.neighbors.inside.begin(), own.neighbors.inside.end(), std::uint8_t{0});
+    own.parting.resize(own.band.blocks.size());
   }
   forBlocks(own.band.blocks.size(), [&](std::size_t b) {
     BandBlock& block = own.band.blocks[b];
@@ -237,17 +259,20 @@ MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progre
       const float least = limits.leastAt(x, y, z);
       const float united = limits.whole->band.valueAt(x, y, z);
       float& value = block.value[n];
-      value -= shift;
-      value = is_lapped ? lapped(value, least, united, lap) : shared(value, least, united);
       const auto here = static_cast<std::size_t>(own.mask.at(at[0], at[1], at[2]));
       std::uint8_t& inside = own.mask.inside[here];
-      if (is_lapped && inside == 0 && limits.whole->mask.holds(x, y, z)) {
+      value = shifted(value, shift, inside != 0);
+      value = is_lapped ? lapped(value, least, united, lap) : shared(value, least, united);
+      const bool is_within = limits.whole->mask.holds(x, y, z);
+      if (is_lapped) own.parting[b][n] = is_within ? partingOf(united, lap) : 0.0F;
+      if (is_lapped && inside == 0 && is_within) {
         own.neighbors.inside[here] = 1;
         inside = value < 0.0F ? 1 : 0;
       }
       value = onSide(value, inside != 0);
     });
   });
+  closeBand(own.band, own.mask);
   return own;
 }
 
@@ -269,7 +294,7 @@ std::optional<MaskedBand> LabelPartition::unite(const Progress& progress) {
   for (std::size_t n = 0; n < layers_.size(); ++n) {
     const MaskedBand& member = cached(layers_[n], progress);
     if (!member.mask.inside.empty()) {
-      members.others.emplace_back(&member.band, shiftOf(n, progress));
+      members.others.emplace_back(&member, shiftOf(n, progress));
     }
   }
   MaskedBand result = cached(all, progress);
@@ -284,6 +309,7 @@ std::optional<MaskedBand> LabelPartition::unite(const Progress& progress) {
       block.value[n] = onSide(value, result.mask.inside[here] != 0);
     });
   });
+  closeBand(result.band, result.mask);
   return result;
 }
 

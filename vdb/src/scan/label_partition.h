@@ -23,6 +23,10 @@ struct MaskedBand {
   /// empty.
   Mask neighbors = {};
   double excess = 0.0;  ///< [voxels] how much more volume the surface encloses than the mask has
+  /// [steps] For lapped layers and layers without neighbors, by block: the value at which the
+  /// layers that meet at a voxel part. The layer's own centers lie below it, all others above.
+  /// Otherwise empty.
+  std::vector<BandBlock::Values> parting = {};
 };
 
 /// Each layer, and all of them together, is smoothed by itself, which gives u_i and u_all. Then
@@ -40,6 +44,9 @@ struct MaskedBand {
 ///   - lap)
 /// The wall between two of them is where e_i = e_j, which is where u_i = u_j; and wherever u_all is
 /// below -groove, at least one of them is negative. Far from other layers e_i equals f_i.
+///
+/// Subtracting a number from a layer's values moves no voxel's center to another side, and centers
+/// keep a small distance from the walls between layers, so that each center is in its own layer.
 ///
 /// Layers that have a label in common do not limit each other. Values are approximately distances,
 /// in steps of the image's smallest spacing.
@@ -69,7 +76,7 @@ class LabelPartition {
   /// values.
   struct Limits {
     const MaskedBand* whole = nullptr;
-    std::vector<std::pair<const Band*, float>> others;
+    std::vector<std::pair<const MaskedBand*, float>> others;
 
     /// The smallest of the other layers' values at an index of the image; NaN: none is near.
     [[nodiscard]] float leastAt(int x, int y, int z) const noexcept;

@@ -42,7 +42,21 @@ struct Images {
   }
 };
 
-void mirror(const Band& band, openvdb::FloatGrid& grid) {
+/// The value of a voxel; NaN: not in the band. An open band's shape ends at the border.
+float valueOf(const Band& band, const Mask& mask, const BandBlock& block, std::size_t n) noexcept {
+  const float value = block.value[n];
+  if (!band.is_open) return value;
+  const auto place = static_cast<int>(n);
+  const std::array<int, 3> at = {block.first[0] + (place >> 6), block.first[1] + (place >> 3 & 7),
+                                 block.first[2] + (place & 7)};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (at[a] >= band.box[a]) return value;
+  }
+  if (mask.inside[static_cast<std::size_t>(mask.at(at[0], at[1], at[2]))] == 0) return value;
+  return band.closed(value, at);
+}
+
+void mirror(const Band& band, const Mask& mask, openvdb::FloatGrid& grid) {
   auto accessor = grid.getAccessor();
   for (const BandBlock& block : band.blocks) {
     bool by_border = false;
@@ -52,7 +66,7 @@ void mirror(const Band& band, openvdb::FloatGrid& grid) {
     }
     if (!by_border) continue;
     for (std::size_t n = 0; n < BandBlock::kVoxels; ++n) {
-      const float value = block.value[n];
+      const float value = valueOf(band, mask, block, n);
       if (std::isnan(value)) continue;
       const auto place = static_cast<int>(n);
       const Images x(block.first[0] + (place >> 6), band.box[0]);
@@ -89,7 +103,7 @@ LevelSet gridOf(const Band& band, const Mask& mask) {
     const auto [x, y, z] = block.first;
     auto leaf = std::make_unique<Leaf>(Coord(x, y, z), background, false);
     for (openvdb::Index n = 0; n < BandBlock::kVoxels; ++n) {
-      const float value = block.value[n];
+      const float value = valueOf(band, mask, block, n);
       if (!std::isnan(value)) {
         leaf->setValueOn(n, value);
         continue;
@@ -102,7 +116,7 @@ LevelSet gridOf(const Band& band, const Mask& mask) {
     }
     grid->tree().addLeaf(leaf.release());
   }
-  mirror(band, *grid);
+  mirror(band, mask, *grid);
   return makeLevelSet(grid, "m");
 }
 
@@ -125,6 +139,11 @@ std::optional<double> LatticeSpline::valueAt(const Vec3& index) const noexcept {
   const FieldSample sample = spline_->sample(index);
   if (!sample.in_band) return std::nullopt;
   return sample.value;
+}
+
+Vec3 LatticeSpline::slopeAt(const Vec3& index) const noexcept {
+  const FieldSample sample = spline_->sample(index);
+  return sample.in_band ? sample.gradient : Vec3(0.0);
 }
 
 std::optional<LatticeSpline::Foot> LatticeSpline::foot(const Vec3& p,

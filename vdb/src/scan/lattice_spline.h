@@ -25,6 +25,9 @@ class LatticeSpline {
   /// Value at an index of the band's box; nothing if the band does not contain the neighborhood.
   [[nodiscard]] std::optional<double> valueAt(const Vec3& index) const noexcept;
 
+  /// The gradient there, by index; 0 where there is no value.
+  [[nodiscard]] Vec3 slopeAt(const Vec3& index) const noexcept;
+
   struct Foot {
     Vec3 point{0.0, 0.0, 0.0};   ///< on the surface
     Vec3 normal{0.0, 0.0, 0.0};  ///< [-] unit, outward, there

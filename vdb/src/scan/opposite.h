@@ -2,7 +2,6 @@
 /// For each voxel of a block, the distance to the nearest voxel on the other side of a mask.
 
 #include <array>
-#include <vector>
 
 #include "palpate/core/math.h"
 #include "scan/mask.h"
@@ -10,10 +9,13 @@
 namespace palpate::vdb {
 
 /// Distance transforms along one axis after another (P. Felzenszwalb and D. Huttenlocher, 2012), to
-/// voxels at most kReach steps away along each axis. Space beyond the image is on neither side.
+/// voxels within a box around each. Along each axis that reaches as far as kReach voxels reach
+/// along any: the nearest of the voxels seen is the nearest of all. Space beyond the image is on
+/// neither side.
 class Opposite {
  public:
   static constexpr int kReach = 5;
+  static constexpr int kMostReach = 20;  ///< along any axis, where spacings differ by more than 4
   static constexpr int kSide = 8;
 
   /// `spacing` of the voxels along each axis, in steps of the smallest.
@@ -24,6 +26,7 @@ class Opposite {
     alignas(32) std::array<float, 512> square;  ///< [steps^2] to the nearest; kNone: there is none
     alignas(32) std::array<float, 512> voxels;  ///< [voxels^2] for the same voxel; the shortest if
                                                 ///< several are equally near
+    alignas(32) std::array<float, 512> fewest;  ///< [voxels^2] to that with the fewest voxels
   };
   static constexpr float kNone = 1e9F;
 
@@ -31,15 +34,18 @@ class Opposite {
   /// on one side; then nothing is found.
   bool find(const Mask& mask, const std::array<int, 3>& first, Found& found) const noexcept;
 
+  /// [steps] All voxels that are nearer than this are seen.
+  [[nodiscard]] double seen() const noexcept { return seen_; }
+
  private:
   template <bool kCubic>
   bool findIn(const Mask& mask, const std::array<int, 3>& first, Found& found) const noexcept;
 
   bool is_cubic_;
-  std::array<std::array<float, kReach + 1>, 3>
+  double seen_;
+  std::array<int, 3> reach_{};  ///< [voxels] along each axis
+  std::array<std::array<float, kMostReach + 1>, 3>
       squares_{};  ///< [steps^2] for a number of voxels along each axis
-  /// Steps to the nearest set bit among eleven voxels; 255: no bit is set.
-  std::vector<std::uint8_t> nearest_;
 };
 
 }  // namespace palpate::vdb

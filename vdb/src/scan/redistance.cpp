@@ -36,10 +36,11 @@ constexpr double kAlike = 0.5;
 class Redistance {
  public:
   Redistance(const LatticeSpline& spline, const Band& band, const Mask& mask, const Image& image,
-             const BakeOptions& options, const Progress& progress)
+             const Vec3& phase, const BakeOptions& options, const Progress& progress)
       : spline_(spline),
         mask_(mask),
-        image_(image),
+        axes_(image.axes),
+        origin_(image.origin - phase),
         progress_(progress),
         plan_(checkOptions(options)),
         to_index_(glm::inverse(image.axes)),
@@ -87,14 +88,14 @@ class Redistance {
             const double share = std::isnan(out) ? 0.5 : static_cast<double>(in / (in - out));
             Vec3 index(mask_.first[0] + at[0], mask_.first[1] + at[1], mask_.first[2] + at[2]);
             index[axis] += side * share;
-            const Vec3 p = image_.toWorld(index);
+            const Vec3 p = axes_ * index + origin_;
             bounds.include(p);
             crossings.push_back(p / plan_.voxel);
           });
     }
     (void)voxelRange(bounds, plan_, options.name);
     // On the mean, each crossed lattice edge stands for two thirds of a voxel's face of surface.
-    const double face = std::pow(std::abs(glm::determinant(image_.axes)), 2.0 / 3.0);
+    const double face = std::pow(std::abs(glm::determinant(axes_)), 2.0 / 3.0);
     const double area =
         static_cast<double>(crossings.size()) * face / (1.5 * plan_.voxel * plan_.voxel);
     constexpr double kRough = 4.0;
@@ -157,7 +158,7 @@ class Redistance {
 
   /// Converts to indices of the band's box.
   [[nodiscard]] Vec3 indexOf(const Vec3& p) const noexcept {
-    return to_index_ * (p - image_.origin) - Vec3(mask_.first[0], mask_.first[1], mask_.first[2]);
+    return to_index_ * (p - origin_) - Vec3(mask_.first[0], mask_.first[1], mask_.first[2]);
   }
 
   [[nodiscard]] bool latticeInside(const Vec3& p) const noexcept {
@@ -174,7 +175,8 @@ class Redistance {
 
   const LatticeSpline& spline_;
   const Mask& mask_;
-  const Image& image_;
+  Mat3 axes_;
+  Vec3 origin_;  ///< [m] of the image's first voxel, from the grid's voxel (0, 0, 0)
   const Progress& progress_;
   BakePlan plan_;
   Mat3 to_index_;
@@ -188,12 +190,17 @@ class Redistance {
 }  // namespace
 
 LevelSet bakeSpline(const LatticeSpline& spline, const Band& band, const Mask& mask,
-                    const Image& image, const BakeOptions& options, const Progress& progress) {
-  Redistance redistance(spline, band, mask, image, options, progress);
+                    const Image& image, const BakeOptions& options, const Progress& progress,
+                    const Vec3& phase,
+                    const std::function<void(const openvdb::FloatGrid::Ptr&)>& last) {
+  Redistance redistance(spline, band, mask, image, phase, options, progress);
   const DistanceLeaves& leaves = redistance.run();
   const BakePlan& plan = redistance.plan();
   const openvdb::FloatGrid::Ptr grid = gridOf(leaves, plan, options);
   fitToSpline(grid, leaves, plan, options);
+  if (last) last(grid);
+  const Vec3 units = phase / plan.meters_per_unit;
+  grid->transform().postTranslate(openvdb::Vec3d(units.x, units.y, units.z));
   report(progress, "distances", 1.0);
   return finishGrid(grid, plan, options);
 }

@@ -6,6 +6,7 @@
 
 #include "palpate/core/text.h"
 #include "palpate/vdb/text.h"
+#include "scan/keep_centers.h"
 #include "scan/label_partition.h"
 #include "scan/lattice.h"
 #include "scan/lattice_spline.h"
@@ -30,6 +31,27 @@ double smallestSpacing(const Image& image) {
   return smallest;
 }
 
+/// [m] The center of a grid's voxel (0, 0, 0) for which the centers of the image's voxels are
+/// centers of the grid's voxels, along each axis of the world where the image's steps are whole
+/// voxels. Parts as thin as a voxel are held best this way, and each center is on the side that its
+/// value says.
+Vec3 phaseOf(const Image& image, double voxel) {
+  constexpr double kWhole = 1e-4;  // [voxels] that an axis or a step may be off, from end to end
+  Vec3 phase(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    bool is_whole = true;
+    for (int a = 0; a < 3; ++a) {
+      const double steps = image.axes[a][axis] / voxel;
+      const double off = std::abs(steps - std::round(steps)) *
+                         static_cast<double>(image.size[static_cast<std::size_t>(a)]);
+      is_whole = is_whole && off < kWhole;
+    }
+    const double first = image.origin[axis] / voxel;
+    if (is_whole) phase[axis] = (first - std::round(first)) * voxel;
+  }
+  return phase;
+}
+
 /// Bakes the surface of a band of values, which has the mask's sign everywhere.
 LevelSet bakeBand(const MaskedBand& of, const Image& image, double voxel_size, BakeOptions bake,
                   const Progress& progress) {
@@ -42,8 +64,9 @@ LevelSet bakeBand(const MaskedBand& of, const Image& image, double voxel_size, B
   }
   bake.metadata["source"] = image.source;
   bake.metadata["frame"] = "RAS";
-  const LatticeSpline spline(band, mask, image.axes,
-                             image.toWorld(Vec3(mask.first[0], mask.first[1], mask.first[2])));
+  const Vec3 phase = phaseOf(image, bake.voxel_size);
+  const Vec3 first = image.toWorld(Vec3(mask.first[0], mask.first[1], mask.first[2]));
+  const LatticeSpline spline(band, mask, image.axes, first - phase);
   Progress rest;
   if (progress) {
     rest = [&](std::string_view what, double fraction) {
@@ -54,7 +77,10 @@ LevelSet bakeBand(const MaskedBand& of, const Image& image, double voxel_size, B
   bake.box.reset();
   BakeOptions wide = bake;
   if (box) wide.half_width += kCubicHalfWidth;
-  const LevelSet whole = bakeSpline(spline, band, mask, image, wide, rest);
+  const LevelSet whole = bakeSpline(
+      spline, band, mask, image, wide, rest, phase, [&](const openvdb::FloatGrid::Ptr& grid) {
+        keepCenters(grid, of, image, phase, checkOptions(wide), wide.length_unit);
+      });
   const auto lost = metadataOf(findLoss(whole, band, mask, of.neighbors, image));
   if (!box) return whole.named(whole.info().name, lost);
   // The faces where a box cuts are flat: those of the baked field.

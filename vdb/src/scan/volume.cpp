@@ -31,16 +31,26 @@ Excess sumOf(const std::vector<Excess>& parts) {
   });
 }
 
+/// The line from an inside voxel to its outside neighbor. A shift of all values leaves it
+/// unchanged.
+struct Line {
+  /// [steps] The difference between the spline and the straight line, where that passes zero.
+  float bend = 0.0F;
+  /// The square of the cosine between it and the surface's normal. The lines along the three axes
+  /// through one place have 1 together. Lines that graze a flat cap may miss it, and count little.
+  float weight = 0.0F;
+};
+
 class Volume {
  public:
   Volume(Band& band, const Mask& mask)
-      : band_(band), mask_(mask), sums_(band.blocks.size()), bends_(band.blocks.size()) {}
+      : band_(band), mask_(mask), sums_(band.blocks.size()), lines_(band.blocks.size()) {}
 
   double run() {
     std::vector<BandBlock::Values> first;
     first.reserve(band_.blocks.size());
     for (const BandBlock& block : band_.blocks) first.push_back(block.value);
-    findBends();
+    findLines();
     float shift = 0.0F;
     for (int round = 0; round < kRounds; ++round) {
       const Excess excess = find();
@@ -68,23 +78,28 @@ class Volume {
       std::size_t crossing = 0;
       forPairs(band_.blocks[b], [&](const Vec3&, const Vec3&, double inside, double outside) {
         const double rise = outside - inside;
-        const double share = (-inside - bends_[b][crossing++]) / rise;
-        sum.volume += (std::clamp(share, 0.0, 1.0) - 0.5) / 3.0;
-        sum.slope += 1.0 / (3.0 * std::max(rise, kLeastRise));
+        const Line& line = lines_[b][crossing++];
+        const double share = (-inside - static_cast<double>(line.bend)) / rise;
+        const auto weight = static_cast<double>(line.weight);
+        sum.volume += (std::clamp(share, 0.0, 1.0) - 0.5) * weight;
+        sum.slope += weight / std::max(rise, kLeastRise);
       });
     });
     return sumOf(sums_);
   }
 
-  /// The difference between the spline and the straight line between two voxels, at the place where
-  /// the line passes zero. A shift of all values leaves this difference unchanged.
-  void findBends() {
+  void findLines() {
     const LatticeSpline spline(band_, mask_, Mat3(1.0), Vec3(0.0));
     forBlocks(band_.blocks.size(), [&](std::size_t b) {
       forPairs(band_.blocks[b],
                [&](const Vec3& at, const Vec3& step, double inside, double outside) {
                  const Vec3 zero = at + step * (inside / (inside - outside));
-                 bends_[b].push_back(static_cast<float>(spline.valueAt(zero).value_or(0.0)));
+                 const Vec3 slope = spline.slopeAt(zero);
+                 const double square = glm::dot(slope, slope);
+                 const double along = glm::dot(slope, step);
+                 lines_[b].push_back(
+                     {static_cast<float>(spline.valueAt(zero).value_or(0.0)),
+                      static_cast<float>(square > 0.0 ? along * along / square : 1.0 / 3.0)});
                });
     });
   }
@@ -100,7 +115,7 @@ class Volume {
           Vec3 step(0.0);
           step[axis] = side;
           visit(Vec3(at[0], at[1], at[2]), step,
-                std::min(static_cast<double>(inside), -kLeastValue),
+                std::min(static_cast<double>(band_.closed(inside, at)), -kLeastValue),
                 std::max(static_cast<double>(outside), kLeastValue));
         });
   }
@@ -108,7 +123,7 @@ class Volume {
   Band& band_;
   const Mask& mask_;
   std::vector<Excess> sums_;
-  std::vector<std::vector<float>> bends_;  ///< [steps] for each block, in the order of forPairs()
+  std::vector<std::vector<Line>> lines_;  ///< for each block, in the order of forPairs()
 };
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace palpate::vdb {
 /// Moves the whole surface, by at most a fraction of a voxel, so that it encloses as much volume as
 /// the voxels of the mask, each voxel staying within its bounds. The volume is measured along the
 /// lines through the voxel centers, along each axis: from where the spline passes zero between an
-/// inside voxel and its outside neighbor; the voxels' own border is half-way between the two.
+/// inside voxel and its outside neighbor; the voxels' own border is half-way between the two. Each
+/// line counts by the square of the cosine between it and the surface's normal.
 /// Returns the volume that the surface still encloses beyond that of the voxels [voxels].
 double keepVolume(Band& band, const Mask& mask);
 
