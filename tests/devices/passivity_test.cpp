@@ -78,7 +78,7 @@ TEST(PassivityObserver, TheVelocityOfTheTickThatComputesAForceSaysNothingOfItsWo
 }
 
 TEST(PassivityObserver, WhatTheDeviceTakesIsNeverCountedTooHigh) {
-  // Against the integral of b v^2 over the true motion, for any force.
+  // The observer's estimate is compared with the integral of b v^2 over the true motion.
   std::mt19937 random(2);
   std::uniform_real_distribution<double> force(-5.0, 5.0);
   PassivityObserver observer(settings());

@@ -233,7 +233,7 @@ layers:
   double time_ = 3.0;
   unsigned buttons_ = 0;
 
-  // The state of the arithmetic.
+  // What the model remembers of earlier ticks.
   std::vector<std::pair<double, Vec3>> history_;
   bool has_time_ = false;
   double last_time_ = 0.0;

@@ -152,7 +152,7 @@ FieldPtr distanceTo(const FieldPtr& function, const Box3& bounds) {
   };
   FunctionField::Claims claims{bounds};
   // Where Newton's method finds a point that is not the closest, the value jumps and is too large.
-  // A bake drops voxels that this bound puts outside the band, so that the bound is generous.
+  // A bake drops voxels that this bound puts outside the band; a tight bound would lose some.
   claims.lipschitz = 16.0;
   return std::make_shared<FunctionField>(sample, claims);
 }

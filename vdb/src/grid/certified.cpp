@@ -23,9 +23,9 @@ using openvdb::Coord;
 constexpr double kMostSlope = 0.25;
 /// [voxels] Beside the surface, a larger contradiction is damage.
 constexpr double kMostStep = 0.25;
-/// [voxels] A value can be off by less than this and still contradict no neighbor by more than
-/// kSmallStep: one half of a grid against the other half by sqrt(3) - sqrt(2), a single voxel by
-/// half of that.
+/// [voxels] Errors below this can stay unseen, because they contradict no neighbor by more than
+/// kSmallStep: sqrt(3) - sqrt(2) where one half of a grid is off against the other half, and half
+/// of that at a single voxel.
 constexpr double kUnseen = 0.4;
 /// With fewer active voxels, widening the grid again is faster than keeping it is worth.
 constexpr std::uint64_t kLeastKept = 100'000;

@@ -24,9 +24,9 @@ class Opposite {
   /// Results for voxels (8 z + y) 8 + x of a block.
   struct Found {
     alignas(32) std::array<float, 512> square;  ///< [steps^2] to the nearest; kNone: there is none
-    alignas(32) std::array<float, 512> voxels;  ///< [voxels^2] for the same voxel; the shortest if
+    alignas(32) std::array<float, 512> voxels;  ///< [voxels^2] to the same voxel; the least if
                                                 ///< several are equally near
-    alignas(32) std::array<float, 512> fewest;  ///< [voxels^2] to that with the fewest voxels
+    alignas(32) std::array<float, 512> fewest;  ///< [voxels^2] to the nearest counted in voxels
   };
   static constexpr float kNone = 1e9F;
 
