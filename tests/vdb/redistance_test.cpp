@@ -53,11 +53,17 @@ Mask maskOfOnes(const Image& image, int margin) {
 // Every voxel of every block, compared with all voxels within reach, for spacings with and without
 // ties.
 TEST(Opposite, FindsTheNearestVoxelOnTheOtherSide) {
-  constexpr int kReach = Opposite::kReach;
   for (const Vec3 spacing : {Vec3(1.0), Vec3(1.0, 1.5, 3.0), Vec3(2.0, 1.0, 1.0)}) {
     for (const double share : {0.002, 0.3, 0.995}) {
       const Mask mask = maskOfOnes(noiseImage(19, share, 7, Mat3(1e-3)), 2);
       const Opposite opposite(spacing);
+      // As far along every axis as kReach voxels along the longest.
+      const double farthest = Opposite::kReach * std::max({spacing.x, spacing.y, spacing.z});
+      std::array<int, 3> reach{};
+      for (int axis = 0; axis < 3; ++axis) {
+        reach[static_cast<std::size_t>(axis)] =
+            static_cast<int>(std::ceil(farthest / spacing[axis]));
+      }
       const auto side = [&](int i, int j, int k) {
         const auto [nx, ny, nz] = mask.box;
         if (i < 0 || j < 0 || k < 0 || i >= nx || j >= ny || k >= nz) return 2;
@@ -71,9 +77,9 @@ TEST(Opposite, FindsTheNearestVoxelOnTheOtherSide) {
           const int i = first[0] + (n & 7), j = first[1] + (n >> 3 & 7), k = first[2] + (n >> 6);
           if (side(i, j, k) == 2) continue;
           double least = kInfinity, voxels = kInfinity;
-          for (int z = -kReach; z <= kReach; ++z) {
-            for (int y = -kReach; y <= kReach; ++y) {
-              for (int x = -kReach; x <= kReach; ++x) {
+          for (int z = -reach[2]; z <= reach[2]; ++z) {
+            for (int y = -reach[1]; y <= reach[1]; ++y) {
+              for (int x = -reach[0]; x <= reach[0]; ++x) {
                 if (side(i + x, j + y, k + z) != 1 - side(i, j, k)) continue;
                 const Vec3 way = Vec3(x, y, z) * spacing;
                 const double square = glm::dot(way, way);

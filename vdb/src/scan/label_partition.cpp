@@ -41,6 +41,8 @@ bool haveCommonVoxel(const Band& a, const Band& b) {
 /// blur that wall near edges.
 constexpr double kLap = 0.2;
 constexpr double kMostLap = 0.5;
+constexpr double kThick = 1.5;  // shortest spacings: slices are thick from here on
+constexpr int kSlit = 4;        // [voxels] half of the widest slit that a lap might close
 /// [steps] How far the outer wall of a lapped layer may lie inside the outer surface of all layers,
 /// where it meets another layer.
 constexpr float kMostGroove = 0.5F;
@@ -124,6 +126,24 @@ constexpr float kOffWall = 0.02F;
 /// `value` less `shift`, on the side of the mask: no voxel's center gets into another layer.
 float shifted(float value, float shift, bool inside) {
   return inside ? std::min(value - shift, -kOffWall) : std::max(value - shift, kOffWall);
+}
+
+/// Whether a voxel that the mask does not hold lies in a slit of it: on some line through the voxel
+/// the mask holds one on both sides, at most kSlit steps away.
+bool isInSlit(const Mask& mask, int x, int y, int z) {
+  constexpr int kHalf = 13;  // of the 26 directions to neighbors, one of each two opposite ones
+  for (int d = 0; d < kHalf; ++d) {
+    const std::array<int, 3> way = {d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1};
+    const auto is_met = [&](int sense) {
+      for (int n = 1; n <= kSlit; ++n) {
+        const int by = sense * n;
+        if (mask.holds(x + by * way[0], y + by * way[1], z + by * way[2])) return true;
+      }
+      return false;
+    };
+    if (is_met(1) && is_met(-1)) return true;
+  }
+  return false;
 }
 
 void keepSides(MaskedBand& layer) {
@@ -242,6 +262,11 @@ MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progre
   const float shift = shiftOf(index, progress);
   const bool is_lapped = edge == LabelEdge::kLapped;
   const Vec3 lengths = lengthsOf(image_);
+  // Between thick slices a layer one slice thin has small values. A lap over its centers from both
+  // sides would close the slit that it lies in.
+  const bool is_thick = std::max({lengths.x, lengths.y, lengths.z}) >
+                        kThick * std::min({lengths.x, lengths.y, lengths.z});
+  const Mask& voxels = cached(layers_[index], progress).mask;
   const auto lap =
       static_cast<float>(std::min(kMostLap, kLap * std::max({lengths.x, lengths.y, lengths.z}) /
                                                 std::min({lengths.x, lengths.y, lengths.z})));
@@ -264,6 +289,9 @@ MaskedBand LabelPartition::layer(std::size_t index, LabelEdge edge, const Progre
       value = shifted(value, shift, inside != 0);
       value = is_lapped ? lapped(value, least, united, lap) : shared(value, least, united);
       const bool is_within = limits.whole->mask.holds(x, y, z);
+      if (is_lapped && is_thick && inside == 0 && value < kOffWall && isInSlit(voxels, x, y, z)) {
+        value = kOffWall;
+      }
       if (is_lapped) own.parting[b][n] = is_within ? partingOf(united, lap) : 0.0F;
       if (is_lapped && inside == 0 && is_within) {
         own.neighbors.inside[here] = 1;
