@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "palpate/vdb/image.h"
+#include "support/scan_folder.h"
 #include "vdb/label_phantoms.h"
 
 namespace palpate::vdb {
@@ -69,6 +71,34 @@ TEST(LabelCenters, HardlyAnyChangesInFoldsAndLayersOneVoxelThin) {
   EXPECT_EQ(all.against, 0U);
   EXPECT_LT(1000U * all.changed, 3U * all.centers);
   EXPECT_EQ(test::openRays(scene, 4, head.radius, 0.05, 1000), 0) << "the dura has a hole";
+}
+
+// The folds are thinner than a slice: a lap over both sides of such a layer would cover its
+// centers.
+TEST(LabelCenters, NoneChangesAgainstItsNeighborsInFoldsOfThickSlices) {
+  const Vec3 spacing(0.5, 0.5, 2.0);
+  test::FoldedHead head;
+  head.radius = 18.0;
+  head.ribbon = 1.75;
+  head.period = 11.0;
+  const Image image = head.image(spacing);
+  const test::LabelScene scene(image);
+  const CenterCount& all = scene.centers().all;
+  EXPECT_GT(all.centers, 50000U);
+  EXPECT_EQ(all.against, 0U);
+  EXPECT_LT(1000U * all.changed, 3U * all.centers);
+  EXPECT_EQ(test::openRays(scene, 4, head.radius, 0.05, 1000), 0) << "the dura has a hole";
+}
+
+// Its centers lie between the voxels of its grids.
+TEST(LabelCenters, NoneChangesAgainstItsNeighborsInAVertebra) {
+  const std::string file = palpate::testing::scanPath("vertebra/subregions.nii.gz");
+  PALPATE_NEEDS_SCAN(file);
+  const Image image = readNifti(file);
+  const CenterCount& all = test::LabelScene(image).centers().all;
+  EXPECT_GT(all.centers, 50000U);
+  EXPECT_EQ(all.against, 0U);
+  EXPECT_LT(1000U * all.changed, 3U * all.centers);
 }
 
 // A degree is what a clinician accepts in slices 4 : 1.
