@@ -2,6 +2,7 @@
 /// A sheet to draw on, in pixels from the top left. The only file that uses the drawing library.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -33,7 +34,7 @@ struct Raster {
   /// 0xRRGGBB
   [[nodiscard]] static std::uint32_t word(const Color& c) {
     const auto byte = [](double share) {
-      return static_cast<std::uint32_t>(std::clamp(share, 0.0, 1.0) * 255.0 + 0.5);
+      return static_cast<std::uint32_t>(std::lround(std::clamp(share, 0.0, 1.0) * 255.0));
     };
     return (byte(c.r) << 16U) | (byte(c.g) << 8U) | byte(c.b);
   }
