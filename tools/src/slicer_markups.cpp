@@ -23,7 +23,7 @@ const Vec3 kTurn(-1.0, -1.0, 1.0);  // LPS to RAS and back
 
 class MarkupsReader {
  public:
-  explicit MarkupsReader(const std::string& path) : path_(path) {}
+  explicit MarkupsReader(std::string path) : path_(std::move(path)) {}
 
   std::vector<Markup> read() {
     const Json file = parsed();
@@ -114,7 +114,7 @@ class MarkupsReader {
     if (at == from.end() || *at == "LPS") return kTurn;
     if (*at == "RAS") return Vec3(1.0);
     throw fail("the coordinate system of " + place + " is " + at->dump() +
-               ", permitted are \"LPS\" and \"RAS\"");
+               R"(, permitted are "LPS" and "RAS")");
   }
 
   /// [m] Slicer writes "mm", or a list of a code, its system and its meaning.

@@ -119,7 +119,7 @@ class ImportReport {
   /// Lists each label by itself; a region of joined labels has several.
   void labels() {
     Json json = Json::array();
-    const auto add = [&](const std::vector<int>& labels, Json more) {
+    const auto add = [&](const std::vector<int>& labels, const Json& more) {
       for (const int label : labels) {
         const auto name = scan_.names.find(label);
         Json one = {{"label", label},
