@@ -299,6 +299,8 @@ const tests = {
     // The hand is the record's: keys turn the view, and a still picture is not drawn again.
     assert.equal(await page.locator("#steers").textContent(), "This page plays the record.");
     assert.ok(await page.locator(".keys.leading").isHidden());
+    // Where drawing is slow, a picture of coarse surfaces is followed by one of whole ones.
+    await page.waitForFunction(() => window.palpatePage.space.detail.isWhole);
     await settle(page);
     const drawn = () => page.evaluate(() => window.palpatePage.space.drawn);
     const still = await drawn();
