@@ -25,7 +25,8 @@ ImageCenters centersOf(const SceneImage& image, const LoadedScene& loaded, const
   vdb::Image voxels;
   try {
     voxels = vdb::readImage(image.file, image.options);
-  } catch (const Error&) {
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::kCancelled) throw;
     // The scene loaded, so its grids were baked before: they came with a bundle.
     out.has_voxels = false;
     return out;
